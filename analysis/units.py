@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Times and shares as people read them. Nothing here rounds to the unsafe side."""
+"""Times and shares as people read them, never rounded to the unsafe side."""
 
 from __future__ import annotations
 

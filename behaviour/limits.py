@@ -27,6 +27,9 @@ UNFINISHED = "RV-1110"
 ON_MODEL = "RV-1111"
 """The code of an invariant that is checked on the model alone."""
 
+OF_PROTOCOLS = MISUSED, NOT_FOLLOWED = "RV-1112", "RV-1113"
+"""The codes of a call that a protocol does not allow, and of one that is not excluded."""
+
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:

@@ -50,7 +50,7 @@ class Movable:
     core: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError that names field and activity."""
+        """Refuse values out of range, with a ValueError that names field and activity."""
         owner = f"activity {self.name}"
         positive(owner, period=self.period, wcet=self.wcet, deadline=self.deadline)
 

@@ -56,7 +56,7 @@ class Frame:
     sporadic: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError that names field and frame."""
+        """Refuse values out of range, with a ValueError that names field and frame."""
         owner = f"message {self.name}"
         positive(owner, period=self.period, deadline=self.deadline, cost=self.cost)
         natural(owner, rank=self.rank, jitter=self.jitter, best=self.best)
@@ -81,7 +81,7 @@ class Errors:
     bits: int = ERROR_BITS
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError."""
+        """Refuse values out of range, with a ValueError."""
         positive("the error model", period=self.period, burst=self.burst, bits=self.bits)
 
 
@@ -100,6 +100,6 @@ class Bus:
     errors: Errors | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError."""
+        """Refuse values out of range, with a ValueError."""
         positive("the bus", bit_time=self.bit_time)
         natural("the bus", unknown=self.unknown)

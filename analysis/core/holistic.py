@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Tasks and buses that release each other: jitter inherited until nothing changes.
+"""Tasks and buses that release each other: jitter is inherited until it no longer changes.
 
 Tindell and Clark, Holistic schedulability analysis for distributed hard real-time
 systems (1994). An item that another one releases arrives with its completion, at the
@@ -226,7 +226,7 @@ def _responses(
 
 
 def _delays(task: Task, core: str, network: Network, late: Mapping[str, int | None]) -> bool:
-    """Whether tasks of its priority lose their bounds; all do where lost releases cost time."""
+    """Whether tasks of its priority lose their bounds; all do where releases take time."""
     platform = network.platforms.get(core)
     return late[task.name] is None or (platform is not None and platform.release > 0)
 

@@ -9,7 +9,7 @@ jitter allows. A busy period that begins between two such instants could begin l
 same jobs in it. So these instants are tried, over one cycle of all the offsets and tables.
 From the instant t on, for job q of the busy period, which arrives at a(q),
 
-    w(q) = B + own(q) + sum over tasks with offsets of  cost of jobs in [t - J_j, t + w(q))
+    w(q) = B + own(q) + sum over tasks with offsets of  C of jobs in [t - J_j, t + w(q))
              + sum over the others of  most_j(ceil((J_j + w(q)) / T_j))
     R    = max over t and q of  t + w(q) - a(q)
 

@@ -28,7 +28,7 @@ class TableRow:
     phase: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError that names the row."""
+        """Refuse values out of range, with a ValueError that names the row."""
         owner = f"row {self.name}"
         positive(owner, wcet=self.wcet, every=self.every)
         natural(owner, phase=self.phase)
@@ -77,7 +77,7 @@ class Task:
     epoch: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is out of range, with a ValueError that names field and task."""
+        """Refuse values out of range, with a ValueError that names field and task."""
         owner = f"task {self.name}"
         positive(owner, period=self.period, deadline=self.deadline, suspensions=self.suspensions)
         natural(owner, jitter=self.jitter, best=self.best, held=self.held, offset=self.offset or 0)

@@ -41,7 +41,7 @@ from .shapes import (
 )
 
 INTERRUPT = 32_767
-"""The priority of what makes jobs ready: above those of all tasks."""
+"""The priority of the work that makes jobs ready: above those of all tasks."""
 
 NAMES = ("Activity_Operation", "Activity_Server", "Composite_Operation_List", "Host",
          "Input_Event", "Model_Name", "Name", "Output_Event", "Output_Events_List",
@@ -50,7 +50,7 @@ NAMES = ("Activity_Operation", "Activity_Server", "Composite_Operation_List", "H
 
 
 def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
-    """The model of ``network``; ``chains`` that sample are not part of what MAST analyses."""
+    """The model of ``network``; MAST does not analyse ``chains`` that sample."""
     need_exact_times(network)
     no_errors(network, "MAST")
     no_given_blocking(network, "MAST")
@@ -347,7 +347,7 @@ class _Writer:
         )
 
     def _releases(self) -> Iterator[MastObject]:
-        """For each task whose releases cost time, that work as a transaction of its own."""
+        """For each task whose releases take time, that work as a transaction of its own."""
         for task in self.network.tasks:
             if self._release(task):
                 name = f"{self.item[task.name]}_release"

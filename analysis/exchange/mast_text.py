@@ -88,7 +88,7 @@ class _Reader:
             at = match.end()
 
     def wrong(self, wanted: str) -> ValueError:
-        """The error that something else stands here."""
+        """The error for an unexpected token."""
         return ValueError(f"line {self.line}: {wanted} expected, not {self.next or 'the end'}")
 
     def take(self, token: str) -> None:

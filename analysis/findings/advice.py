@@ -184,7 +184,11 @@ def lines(found: Advice | None) -> tuple[str, ...]:
         aim = f"let all execution times grow by {percent(ROOM)}"
     enough = [change for change in found.changes if change.enough]
     rest = [change for change in found.changes if not change.enough]
-    told = [f"To {aim}, one of these is enough:"] if enough else [f"No single change would {aim}."]
+    told = (
+        [f"To {aim}, one of these is enough:"]
+        if enough
+        else [f"No change of one WCET, period or order alone would {aim}."]
+    )
     told += [f"  {_told(change, found)}" for change in enough[:SHOWN]]
     if len(enough) > SHOWN:
         told.append(f"  and {len(enough) - SHOWN} more")

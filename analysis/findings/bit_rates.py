@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -30,19 +31,52 @@ def blamed_on_a_bus(
     found: tuple[Diagnostic, ...],
     judged: Callable[[Analysis], Sequence[Diagnostic]],
 ) -> tuple[Diagnostic, ...]:
-    """The findings; one error in place of all errors, where the bit rate of one bus explains them.
+    """The findings; one error in place of all that a higher bit rate of one bus removes.
 
-    ``judged`` gives the findings of a changed system. A bus that is overloaded has its own error.
+    ``judged`` gives the findings of a changed system. The error of an overloaded bus names the
+    rate in its hint. A bus whose identifiers the analysis chooses is left out: another rate may
+    give them another order.
     """
+    if analysis.overloaded:
+        return tuple(_with_number(one, analysis, judged) for one in found)
     late = [one for one in found if one.is_error]
-    if len(late) < SEVERAL or analysis.overloaded:
-        return found
     for bus in analysis.system.buses:
-        for rate in _higher(bus):
-            if not any(one.is_error for one in judged(_with_rate(analysis, bus, rate))):
-                rest = (one for one in found if not one.is_error)
-                return (_too_slow(bus, rate, late), *rest)
+        rates = tuple(_higher(bus))
+        if len(late) < SEVERAL or bus.audsley or not rates:
+            continue
+
+        def left(rate: int, bus: Bus = bus) -> set[object]:
+            """The limits that are exceeded at another rate."""
+            other = judged(_with_rate(analysis, bus, rate))
+            return {_subject(one) for one in other if one.is_error}
+
+        always = left(rates[-1])
+        gone = [one for one in late if _subject(one) not in always]
+        if len(gone) >= SEVERAL:
+            rate = next(one for one in rates if left(one) <= always)
+            return (_too_slow(bus, rate, gone), *(one for one in found if one not in gone))
     return found
+
+
+def _subject(one: Diagnostic) -> object:
+    """The limit that is exceeded: the same at each bit rate, whatever the numbers."""
+    return one.code, one.origin, re.split(r"\d", one.message)[0]
+
+
+def _with_number(
+    one: Diagnostic, analysis: Analysis, judged: Callable[[Analysis], Sequence[Diagnostic]]
+) -> Diagnostic:
+    """The error of an overloaded bus with the rate that meets every limit, if there is one."""
+    bus = next((b for b in analysis.overloaded if b.origin == one.origin), None)
+    if bus is None or one.hint is None or bus.audsley:
+        return one
+    for rate in _higher(bus):
+        if not any(other.is_error for other in judged(_with_rate(analysis, bus, rate))):
+            text = (
+                f"{one.hint}: `bit_rate: {_spoken(rate)}` is the lowest standard rate that meets "
+            )
+            return replace(one, hint=f"{text}all limits")
+    return one
 
 
 def _higher(bus: Bus) -> Iterator[int]:
@@ -62,7 +96,7 @@ def _too_slow(bus: Bus, rate: int, late: Sequence[Diagnostic]) -> Diagnostic:
     """The error of a bus at which so much is late."""
     notes = [(one.origin, one.message) for one in late[:SHOWN]]
     if more := len(late) - SHOWN:
-        notes.append((bus.origin, f"{more} more errors follow from it: `ravenchart analyse`"))
+        notes.append((bus.origin, f"`ravenchart analyse` shows the other {more}"))
     return error(
         TOO_SLOW,
         bus.origin,

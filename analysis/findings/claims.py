@@ -30,7 +30,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ChainClaim, Claims, ResponseClaim
 from ravenchart.gen.model.system import UNREADY
 
-from .deadlines import findings
+from .deadlines import each_finding
 
 EFFORT = 200_000
 """The work for the windows of one task or message: as much as for its response."""
@@ -87,7 +87,7 @@ def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
     """An error for each deadline or limit that is met only by offsets no certificate shows."""
     if analysis.for_all_offsets is analysis:
         return
-    for one in findings(analysis.for_all_offsets, but=by_offsets(analysis)):
+    for one in each_finding(analysis.for_all_offsets, but=by_offsets(analysis)):
         if one.is_error:
             text = f"without offsets, {one.message}; the certificate cannot show offsets here yet"
             hint = "choose times or priorities that do without offsets"
@@ -170,7 +170,7 @@ def _jobs(response: Response) -> list[int]:
 
 
 def _settled(window: Window, fixed: list[int], effort: Effort, name: str) -> list[int]:
-    """The least windows that hold these demands and what the sources add."""
+    """The least windows that hold these demands and those of the sources."""
     found = []
     for demand in fixed:
         if not window.settle(demand, effort):

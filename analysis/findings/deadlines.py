@@ -53,13 +53,13 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
     """
 
     def judged(one: Analysis) -> tuple[Diagnostic, ...]:
-        return _judged(one, but)
+        return each_finding(one, but)
 
     return blamed_on_a_bus(analysis, judged(analysis), judged)
 
 
-def _judged(analysis: Analysis, but: Collection[str]) -> tuple[Diagnostic, ...]:
-    """The findings, without a look for a bus that is too slow."""
+def each_finding(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic, ...]:
+    """The same, without a look for a bus that is too slow."""
     causes = Causes(analysis, [one for one in analysis.failed() if one not in but])
     found: list[tuple[str, Diagnostic]] = []
     for name in causes.failed:

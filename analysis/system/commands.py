@@ -14,8 +14,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravenchart.gen.derive.calls import published_by
+from ravenchart.gen.derive.calls import asking, published_by, serving
 from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server, wcet_of
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import Carried, Stop
 
 if TYPE_CHECKING:
@@ -48,46 +49,43 @@ class CommandTimes:
 def command_times(analysis: Analysis) -> Iterator[CommandTimes]:
     """Every required command, for each row that uses it."""
     for binding in analysis.system.bindings:
-        need = binding.need
-        component = analysis.system.instance(binding.instance).component
-        for row in component.runnables():
-            if need.name in (row.reads if need.is_read else row.sends):
-                yield _times(analysis, binding, f"{binding.instance}.{row.name}")
+        for row in asking(analysis.system, binding):
+            yield _times(analysis, binding, row)
 
 
-def _times(analysis: Analysis, binding: Binding, caller: str) -> CommandTimes:
-    need, provider = binding.need, binding.provider
+def _times(analysis: Analysis, binding: Binding, row: End) -> CommandTimes:
+    need, provider, caller = binding.need, binding.provider, str(row)
     if isinstance(provider, Device):
         wcet = wcet_of(provider, need.name)
         return CommandTimes(caller, need.name, provider.name, "direct", wcet)
     if isinstance(provider, Remote):
         message = next(m for m in analysis.system.messages if m.name == provider.request)
-        way = (Carried(provider.request), provider.served)
+        served = serving(provider.server)
         whole = {chain.name: found.reaction for chain, found in analysis.limited}
         answered = whole.get(provider.request) if provider.reply else None
         return CommandTimes(
             caller,
             need.name,
-            provider.served,
+            str(served),
             f"over {message.bus}",
             0,
-            analysis.latency(way).reaction,
+            analysis.latency((Carried(provider.request), served)).reaction,
             answered,
             provider.time_limit or None,
             waits=True,
         )
     if isinstance(provider, RemoteRead):
         message = next(m for m in analysis.system.messages if m.name == provider.message)
-        age = analysis.latency((Carried(provider.message), caller)).age
+        age = analysis.latency((Carried(provider.message), row)).age
         name, how, limit = str(message.source), f"over {message.bus}", provider.time_limit
         return CommandTimes(caller, need.name, name, how, 0, answered=age, limit=limit)
     if isinstance(provider, Server):
         if published_by(binding) is not None:
             name = f"{provider.instance}.{published_by(binding)}"
             return CommandTimes(caller, need.name, name, "copied", 0)
-        served = f"{provider.instance}.{provider.interface.server}"
-        found = from_release(analysis, (caller, served))
-        return CommandTimes(caller, need.name, served, "queued", 0, found, waits=True)
+        served = serving(provider)
+        found = from_release(analysis, (row, served))
+        return CommandTimes(caller, need.name, str(served), "queued", 0, found, waits=True)
     stand_in = "" if need.stand_in is None else f"{binding.instance}.{need.stand_in.item}"
     return CommandTimes(caller, need.name, stand_in or "nothing", "stand-in", 0)
 

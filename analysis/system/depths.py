@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from ravenchart.gen.derive.calls import callers_of, calls_from_afar
 from ravenchart.gen.model.commands import Provided
 from ravenchart.gen.model.component import Port, PortKind
-from ravenchart.gen.model.instances import Connection, Instance
+from ravenchart.gen.model.instances import Connection, End, Instance
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import Carried, Stop
 from ravenchart.gen.origins import Origin
@@ -71,7 +71,7 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
         received = system.received(processor.released_by, processor.node)
         taken = [analysis.deliveries[one.element] for one in received]
         waits = [None if d.bound is None or own is None else d.bound - own for d in taken]
-        if not waits or processor.released_by is None:
+        if not waits or not isinstance(processor.released_by, str):
             continue
         needed = _together(list(zip(waits, (d.message.period for d in taken), strict=True)))
         if needed is None:
@@ -97,15 +97,13 @@ def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
 
 def _of_port(instance: Instance, port: Port, analysis: Analysis) -> Iterator[Depth]:
     """The values that wait in a queued port for their handler."""
-    system, place = analysis.system, f"{instance.name}.{port.name}"
+    system, place = analysis.system, End(instance.name, port.name)
     ways: list[tuple[Stop, ...]] = [
-        (Carried(message.name), place)
-        for message in system.messages
-        if place in map(str, message.targets)
+        (Carried(message.name), place) for message in system.messages if place in message.targets
     ]
     for connection in system.connections:
-        if str(connection.target) == place:
-            ways += [(row, str(connection.source), place) for row in _senders(connection, analysis)]
+        if connection.target == place:
+            ways += [(row, connection.source, place) for row in _senders(connection, analysis)]
     needed: int | None = 0
     for way in ways:
         hop = analysis.latency(way).hops[-1]
@@ -131,7 +129,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     expected = any(binding.need.on_full for binding in near)
     if not (afar or near) or (expected and not afar):
         return
-    served = f"{instance.name}.{provided.server}"
+    served = End(instance.name, str(provided.server))
     ways = [(Carried(m.name), m.period) for m in afar if m.call and m.call.reply is None]
     times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
     for binding in near:
@@ -139,7 +137,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
         for row in component.senders(binding.need.name):
             serves = component.served_by(row.name)
             once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
-            within = from_release(analysis, (f"{binding.instance}.{row.name}", served))
+            within = from_release(analysis, (End(binding.instance, row.name), served))
             times += [(within, row.timing.period)] * once
     together = _together(times)
     needed = None if together is None else together + len(afar) - len(ways)
@@ -147,7 +145,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     yield Depth(what, "queue", provided.origin, provided.depth, needed)
 
 
-def _senders(connection: Connection, analysis: Analysis) -> list[str]:
+def _senders(connection: Connection, analysis: Analysis) -> list[End]:
     source = analysis.system.instance(connection.source.instance)
-    rows = source.component.senders(connection.source.port)
-    return [f"{source.name}.{row.name}" for row in rows]
+    rows = source.component.senders(connection.source.name)
+    return [End(source.name, row.name) for row in rows]

@@ -3,21 +3,22 @@
 
 """The dependencies of a system as a graph, and the chains through it.
 
-Nodes are ids: ``owner.name`` for rows, ports and data, `Carried` for messages, and for
-components, instances and processors their name behind what they are (each has its
-``kind``). Edges point the way values go (``reads``, ``writes``, ``sends``, ``carries``)
-or from a processor to the rows it ``runs`` and an instance to its component (``is``).
+Nodes are an `End` for a row, port or data item, `Carried` for a message, the id for a row of a bus,
+and kind and name for components, instances and processors. Each node has its ``kind``. Edges point in the
+direction of values (``reads``, ``writes``, ``sends``, ``carries``). Other edges lead
+from a processor to the rows it ``runs`` and from an instance to its component (``is``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import cast
 
 import networkx as nx
 
 from ravenchart.gen.model.component import Activity, Component, Direction
-from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Stop, System
 
@@ -25,9 +26,9 @@ FLOW = frozenset({"reads", "writes", "sends", "carries"})
 """The kinds of edges along which values travel."""
 
 
-def dependencies(system: System) -> nx.DiGraph[Stop]:
+def dependencies(system: System) -> nx.DiGraph[Stop | str]:
     """The graph of the whole system."""
-    graph: nx.DiGraph[Stop] = nx.DiGraph(name=system.name)
+    graph: nx.DiGraph[Stop | str] = nx.DiGraph(name=system.name)
     for component in system.components:
         graph.add_node(f"component {component.name}", kind="component", label=component.name)
     for instance in system.instances:
@@ -36,20 +37,21 @@ def dependencies(system: System) -> nx.DiGraph[Stop]:
         node = f"processor {processor.name}"
         graph.add_node(node, kind="processor", label=processor.name)
         for slot in processor.slots:
+            row: Stop | str = slot.element if slot.of_bus else End(slot.owner, slot.name)
             if slot.of_bus:
-                graph.add_node(slot.element, kind="row", label=slot.element)
-            graph.add_edge(node, slot.element, kind="runs")
+                graph.add_node(row, kind="row", label=slot.element)
+            graph.add_edge(node, row, kind="runs")
     for connection in system.connections:
-        graph.add_edge(str(connection.source), str(connection.target), kind="carries")
+        graph.add_edge(connection.source, connection.target, kind="carries")
     for message in system.messages:
         carried = Carried(message.name)
         graph.add_node(carried, kind="message", label=message.name)
         if message.controls:
             continue  # no values travel with it
         if message.source is not None:
-            graph.add_edge(str(message.source), carried, kind="carries")
+            graph.add_edge(message.source, carried, kind="carries")
         for target in message.targets:
-            graph.add_edge(carried, str(target), kind="carries")
+            graph.add_edge(carried, target, kind="carries")
     return graph
 
 
@@ -63,7 +65,7 @@ class Ways:
     @classmethod
     def of(cls, system: System) -> Ways:
         """Of the whole system."""
-        graph = dependencies(system)
+        graph = cast("nx.DiGraph[Stop]", dependencies(system))  # values go between stops alone
         carries = {edge for edge in graph.edges if graph.edges[edge]["kind"] in FLOW}
         return cls(system, nx.subgraph_view(graph, filter_edge=lambda a, b: (a, b) in carries))
 
@@ -90,25 +92,25 @@ def component_view(system: System) -> nx.DiGraph[str]:
         graph.add_node(f"message {message.name}", kind="message", label=message.name)
     for connection in system.connections:
         _add_port(
-            graph, connection.source.instance, connection.target.instance, connection.target.port
+            graph, connection.source.instance, connection.target.instance, connection.target.name
         )
     for message in system.messages:
         node = f"message {message.name}"
         if message.source is not None:
-            _add_port(graph, message.source.instance, node, message.source.port)
+            _add_port(graph, message.source.instance, node, message.source.name)
         for target in message.targets:
-            _add_port(graph, node, target.instance, target.port)
+            _add_port(graph, node, target.instance, target.name)
     return graph
 
 
-def _add_instance(graph: nx.DiGraph[Stop], instance: Instance) -> None:
-    """The ports, data and rows of one instance, and what they exchange."""
+def _add_instance(graph: nx.DiGraph[Stop | str], instance: Instance) -> None:
+    """The ports, data and rows of one instance, and the values between them."""
     component = instance.component
     graph.add_node(f"instance {instance.name}", kind="instance", label=instance.name)
     graph.add_edge(f"instance {instance.name}", f"component {component.name}", kind="is")
 
-    def at(name: str) -> str:
-        return f"{instance.name}.{name}"
+    def at(name: str) -> End:
+        return End(instance.name, name)
 
     for port in component.ports:
         graph.add_node(at(port.name), kind="port", label=port.name)

@@ -17,6 +17,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
@@ -95,7 +96,7 @@ def _end(start: int, stages: Sequence[Stage]) -> int | None:
 def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
     """The stage of each place of a chain's way that the trace records."""
     messages = {message.name: message for message in system.messages}
-    inputs = {f"{i.name}.{port.name}" for i in system.instances for port in i.component.inputs()}
+    inputs = {End(i.name, port.name) for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}
     jobs: Sequence[int] = ()  # of the row before
     for place in chain.way:
@@ -106,10 +107,10 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
             yield [r.time for r in seen.of(kind, place.message)], jobs if at_once else ()
             jobs = ()
         elif place in inputs:
-            yield [r.time for r in seen.of("arrived", place)], jobs
+            yield [r.time for r in seen.of("arrived", str(place))], jobs
             jobs = ()
-            yield [r.time for r in seen.of("activity", f"{place.rpartition('.')[0]}.ports")], jobs
-        elif place in rows:
-            times = [r.time for r in seen.of("activity", place)]
+            yield [r.time for r in seen.of("activity", f"{place.instance}.ports")], jobs
+        elif str(place) in rows:
+            times = [r.time for r in seen.of("activity", str(place))]
             yield times, ()
             jobs = times

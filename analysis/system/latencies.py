@@ -32,6 +32,7 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
@@ -157,15 +158,15 @@ class Latencies:
                 steps += _of_message(found, received, steps, released)
                 steps[-1] = self._whole(steps[-1], received)
                 continue
-            row, port = place, self._input(place)
+            row, port = str(place), self._input(place)
             if port is not None:
-                row = f"{place.rpartition('.')[0]}.ports"
-            elif place not in self.rows:
+                row = f"{place.instance}.ports"
+            elif row not in self.rows:
                 continue
             if kept:
                 steps[-1] = replace(steps[-1], keeps=kept)
             steps.append(self._row(row, port, place, steps, released))
-            kept = "" if port is not None else self._kept(row, following)
+            kept = "" if port is not None else self._kept(place, following)
         if kept:
             steps[-1] = replace(steps[-1], keeps=kept)
         network = replace(self.network, released_by=released)
@@ -178,13 +179,10 @@ class Latencies:
             return step
         return replace(step, longest=travel.cycle, delay=travel.cycle - travel.message.period)
 
-    def _input(self, place: str) -> Port | None:
+    def _input(self, place: End) -> Port | None:
         """The input port of a place; None for a place that is none."""
-        instance, _, name = place.rpartition(".")
-        for port in self.system.instance(instance).component.inputs():
-            if port.name == name:
-                return port
-        return None
+        ports = self.system.instance(place.instance).component.inputs()
+        return next((port for port in ports if port.name == place.name), None)
 
     def _seldom(self, first: Stop) -> str:
         """Why the time to the next frame of the first message of a way has no bound.
@@ -197,16 +195,15 @@ class Latencies:
         source = message.source
         if source is None or message.call is not None or message.transmission is not None:
             return ""
-        senders = self.system.instance(source.instance).component.senders(source.port)
-        kept = (self._kept(f"{source.instance}.{one.name}", str(source)) for one in senders)
+        senders = self.system.instance(source.instance).component.senders(source.name)
+        kept = (self._kept(End(source.instance, one.name), source) for one in senders)
         return next(filter(None, kept), "")
 
-    def _kept(self, row: str, following: Stop | None) -> str:
+    def _kept(self, row: End, following: Stop | None) -> str:
         """Why jobs of a row may leave the next place unchanged; "" where none does."""
-        owner, _, name = row.rpartition(".")
-        component = self.system.instance(owner).component
-        item = named(component.runnables(), name)
-        if following is None or component.renews(item, str(following).rpartition(".")[2]):
+        component = self.system.instance(row.instance).component
+        item = named(component.runnables(), row.name)
+        if not isinstance(following, End) or component.renews(item, following.name):
             return ""
         return f"{row} gives {following} a new value in some of its jobs only"
 
@@ -214,7 +211,7 @@ class Latencies:
         self,
         row: str,
         port: Port | None,
-        place: str,
+        place: End,
         steps: Sequence[ChainStep],
         released: dict[str, str],
     ) -> ChainStep:
@@ -236,12 +233,12 @@ class Latencies:
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
-        processor, _ = self.rows[row]
+        processor, at = self.rows[row]
+        slot = processor.slots[at]
         if processor.released_by_port is not None and made.hop is not HopKind.RELEASED:
             made = self._rare(made, processor, before)
-        owner, _, name = row.rpartition(".")
-        regions = self.system.instance(owner).component.regions
-        if any(region.name == name and region.takes_turns for region in regions):
+        regions = self.system.instance(slot.owner).component.regions
+        if any(region.name == slot.name and region.takes_turns for region in regions):
             waits = f"{row} takes events, time-outs and completions one by one, oldest first"
             made = replace(made, waits=waits)
         return made
@@ -269,12 +266,12 @@ class Latencies:
             return replace(step, waits=waits)
         return step
 
-    def _senders(self, place: str) -> tuple[Region | Activity, ...]:
+    def _senders(self, place: End) -> tuple[Region | Activity, ...]:
         """The rows that send to a port over a connection; a message has one."""
         for connection in self.system.connections:
-            if str(connection.target) == place:
+            if connection.target == place:
                 source = self.system.instance(connection.source.instance)
-                return source.component.senders(connection.source.port)
+                return source.component.senders(connection.source.name)
         return ()
 
 

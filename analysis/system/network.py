@@ -9,8 +9,8 @@ follows the job that sends it, or the frame that arrived; the frame follows the
 driver. Every user of a protected object has a section of its own. A node's frames
 leave in the order sent, by the contract of the controller, so they share a queue; the
 driver may hand them over one by one. Periodic processors have their offsets: release k
-is due at the node's epoch + offset + k periods, however late the one before was. Nothing
-ties the probe, or the clock of another node, to that epoch.
+is due at the node's epoch + offset + k periods, however late the one before was. The probe,
+and the clocks of other nodes, are independent of that epoch.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SECOND = 10**9
 
 
 def network_of(system: System) -> Network:
-    """Tasks, frames, and what releases what; names are those of the elements."""
+    """Tasks, frames, and the releases between them; names are those of the elements."""
     tasks = {task.element for task in system.tasks}
     released = {t.element: t.released_by for t in system.tasks if t.released_by is not None}
     for message in system.messages:

@@ -7,7 +7,8 @@ The file holds one record a line. Times are in nanoseconds from the controller's
 come after the ``T`` and ``V`` lines, and ten times a second where a monitor can watch. The last
 counts are those of the run. Without ``END`` the run was cut off. The map names each element number.
 
-    E clock, M digest                           clock at the start (a board repeats M); the model's
+    E clock                                     the machine's clock at the start
+    M digest                                    of the program's model; a board repeats the line
     T time kind element value                   an event
     V time element value                        a recorded value
     P processor releases misses worst_response last_response    (the last not in older programs)
@@ -171,11 +172,11 @@ class Observation:
     """How often the supervision fed the watchdog, where there is one."""
     complete: bool = False
     digest: str = ""
-    """SHA-256 of the model that the program was generated from, as the program says."""
+    """SHA-256 of the model that the program was generated from, as the program prints it."""
     start: Ns = NO_TIME
     """The machine's clock when this controller's time was 0."""
     ready: Ns = NO_TIME
-    """From when on all controllers ran."""
+    """The time from which on all controllers ran."""
 
     @property
     def misses(self) -> int:
@@ -184,7 +185,7 @@ class Observation:
 
     @property
     def losses(self) -> dict[str, int]:
-        """The counts of what was lost: all but frames sent and received."""
+        """The counts of losses: all but frames sent and received."""
         return {what: n for what, n in self.counts.items() if what.rpartition(".")[2] not in _GOOD}
 
     @property
@@ -228,7 +229,7 @@ class Observation:
 
 
 def read_map(text: str, file: str = "trace.json") -> TraceMap:
-    """The map in ``text``; TraceError when it is not one."""
+    """The map in ``text``; TraceError when the text is not a map."""
     try:
         raw: Any = json.loads(text)
         elements = [_element(item) for item in raw["elements"]]
@@ -243,7 +244,7 @@ def read_map(text: str, file: str = "trace.json") -> TraceMap:
 
 
 def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -> Observation:
-    """What the lines tell; TraceError names the first line that cannot be read."""
+    """The observation in the lines; TraceError names the first line that cannot be read."""
     seen = Observation(trace_map)
     for number, line in enumerate(lines, start=1):
         try:
@@ -264,10 +265,10 @@ def of_model(seen: Observation, digest: str, file: str = "trace") -> None:
 
 
 def merged(parts: Mapping[str, Observation]) -> Observation:
-    """What several controllers on one machine showed, by node: as if it were one.
+    """The joint observation of several controllers on one machine, by node, as if of one.
 
-    Times count from the first start of all; elements are numbered anew, and counts are
-    those of their node, in front of whose words its name stands.
+    Times count from the first start of all. Elements are numbered anew. The words of counts
+    begin with the name of their node.
     """
     first = min(part.start for part in parts.values())
     elements: dict[int, NumberedElement] = {}
@@ -296,7 +297,7 @@ def merged(parts: Mapping[str, Observation]) -> Observation:
 
 
 def take_line(line: str, seen: Observation) -> None:
-    """Add one line to what was seen; ValueError says what is wrong with it."""
+    """Add one line to the observation; ValueError names the error of the line."""
     words = line.split()
     if words and seen.complete:
         raise ValueError("nothing may follow END")
@@ -350,7 +351,7 @@ def _take_count(words: list[str], seen: Observation) -> None:
 
 
 def trace_record(time: str, kind: str, number: str, value: str, trace_map: TraceMap) -> TraceRecord:
-    """The record in the words of a T line; ValueError says what is wrong with it."""
+    """The record in the words of a T line; ValueError names the error of the words."""
     name = kind.lower()
     if name not in KINDS and name != VALUE:
         raise ValueError(f"unknown kind {kind!r}")
@@ -364,14 +365,14 @@ def trace_record(time: str, kind: str, number: str, value: str, trace_map: Trace
 
 
 def _choices(kind: str, element: NumberedElement) -> tuple[str, ...] | None:
-    """The names that the values of such records stand for; None where they are numbers."""
+    """The names of the values of such records; None where the values are numbers."""
     if kind == VALUE:
         return element.literals or None
     return {"state": element.leaves, "transition": element.transitions}.get(kind)
 
 
 def is_of(what: str, label: str) -> bool:
-    """Whether an L line counts this; of several controllers the node stands in front."""
+    """Whether an L line has this label; of several controllers the node comes before it."""
     return what.lower().rpartition(".")[2] == label
 
 
@@ -417,5 +418,5 @@ def _count(word: str) -> int:
 
 
 def _reason(fault: Exception) -> str:
-    """What an exception of the reader says."""
+    """The text of an exception of the reader."""
     return f"{fault.args[0]} is missing" if isinstance(fault, KeyError) else str(fault)

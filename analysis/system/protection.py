@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the end-to-end protection of each message comes to, in numbers.
+"""The end-to-end protection of each message, in numbers.
 
-The residual error rate is that of IEC 61784-3 for a black channel: nothing but the protection
+The residual error rate is that of IEC 61784-3 for a black channel: only the protection
 itself counts, not the CRC of CAN. docs/protection.md has the formulas and their assumptions.
 """
 
@@ -22,16 +22,17 @@ from ravenchart.gen.model.system import System
 from .timing import Analysis
 
 BIT_ERROR_PROBABILITY = Fraction(1, 100)
-"""That of the black channel."""
+"""The bit error probability of the black channel."""
 HOUR = 3_600_000_000_000
-"""In ns."""
+"""An hour in ns."""
 
 
 @dataclass(frozen=True, slots=True)
 class PortSilence:
-    """A port that receives the message, and how long after the last good frame it is stale.
+    """A port that receives the message, and the time until the port is stale.
 
-    From when that frame was due to be sent; None: no `max_age`, or no bound.
+    The time counts from when the last good frame was due to be sent; None: no `max_age`, or
+    no bound.
     """
 
     port: End
@@ -53,7 +54,7 @@ class ProtectedMessage:
     rate: float
     """Corrupted frames that are not found, in an hour."""
     tolerated: Ns
-    """Time over which frames may be lost, and the next one is used."""
+    """The time of lost frames after which the next one is still used."""
     silences: tuple[PortSilence, ...]
 
 
@@ -62,7 +63,7 @@ def residual_probability(
 ) -> Fraction:
     """The probability that errors in ``length`` bits are not found.
 
-    2 ** -check_bits of the errors of more than ``found_bits`` bits; those of fewer all are.
+    Errors of up to ``found_bits`` bits are all found. Of the others 2 ** -check_bits are not.
     """
     few = Fraction(0)
     for wrong in range(found_bits + 1):
@@ -97,7 +98,7 @@ def protected(analysis: Analysis) -> tuple[ProtectedMessage, ...]:
 
 
 def silences(analysis: Analysis, message: Message) -> tuple[PortSilence, ...]:
-    """When each port that receives a message is known to be stale."""
+    """The time until each port that receives a message is known to be stale."""
     return tuple(_silence(analysis, message, end) for end in message.targets)
 
 
@@ -105,7 +106,7 @@ def _silence(analysis: Analysis, message: Message, end: End) -> PortSilence:
     """Delivery, then executions of the port region until the age passes, one more, and R of it."""
     system: System = analysis.system
     component = system.instance(end.instance).component
-    home, limit = system.home(end), component.port(end.port).max_age
+    home, limit = system.home(end), component.port(end.name).max_age
     element = next(one.element for one in system.receptions(message) if one.node == home)
     if component.port_region is None or limit is None:
         return PortSilence(end, element, None)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How soon the silence of each processor is found, or that nothing looks for it."""
+"""The time until the silence of each processor is found, or the lack of supervision."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from .timing import Analysis
 
 @dataclass(frozen=True, slots=True)
 class Silence:
-    """One processor under supervision; times from when a release was due.
+    """One processor under supervision; times count from when a release was due.
 
-    Silent after ``limit`` without completion, found by ``found`` at the latest: None where the
-    supervisor has no bound.
+    It is silent after ``limit`` without completion, and found at ``found`` at the latest: None
+    where the supervisor has no bound.
     """
 
     processor: str
@@ -29,7 +29,7 @@ class Silence:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """A node with its processors; ``silences`` is None where nothing supervises them."""
+    """A node with its processors; ``silences`` is None where they have no supervision."""
 
     node: str
     processors: tuple[str, ...]

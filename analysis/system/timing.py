@@ -37,7 +37,7 @@ FACTOR_STEPS = 1000
 
 
 class Verdict(Enum):
-    """What the analysis says of one task or message."""
+    """The verdict on one task or message."""
 
     MET = "met"
     MISSED = "missed"
@@ -46,11 +46,11 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Analysis:
-    """What the analysis found for a system; names are those of its elements.
+    """The analysis of a system; names are those of its elements.
 
-    ``found`` counts the rows of a table in the jobs that run them, and these where offsets
-    place them; ``plain`` has the bounds with every row in every job at any time, as one
-    reckons by hand.
+    ``found`` counts the rows of a table in the jobs that run them, and these jobs where
+    offsets place them. ``plain`` has the bounds with every row in every job at any time, as
+    in a calculation by hand.
     """
 
     system: System
@@ -69,7 +69,7 @@ class Analysis:
         return {message.element: message for message in self.system.frames}
 
     def origin(self, name: str) -> Origin:
-        """Where a task or message stands in the model."""
+        """The location of a task or message in the model."""
         return (self.tasks.get(name) or self.messages[name]).origin
 
     @cached_property
@@ -131,14 +131,14 @@ class Analysis:
         return tuple(sorted(self.found.responses, key=key))
 
     def failed(self) -> tuple[str, ...]:
-        """What is not met, worst first."""
+        """The tasks and messages that do not meet their deadlines, worst first."""
         return tuple(n for n in self.worst_first() if self.verdict(n) is not Verdict.MET)
 
     @property
     def schedulable(self) -> bool:
-        """Every deadline is met, every received frame is taken, every limit kept, nothing lost.
+        """Whether all deadlines and limits are met, all frames are taken, and no value is lost.
 
-        But for queues of which no depth is known to hold all.
+        Queues for which no sufficient depth is known do not count.
         """
         kept = all(found.met for _, found in self.limited)
         kept = kept and all(one.in_time for one in self.transfers.values())
@@ -147,7 +147,7 @@ class Analysis:
 
     @cached_property
     def short_queues(self) -> tuple[Depth, ...]:
-        """The queues that may lose what does not fit."""
+        """The queues that may lose values."""
         return tuple(one for one in depths(self) if not one.holds)
 
     @property
@@ -192,7 +192,7 @@ class Analysis:
 
     @cached_property
     def deliveries(self) -> dict[str, Delivery]:
-        """How each received message gets through the queue of its bus, by reception."""
+        """The delivery of each received message through the queue of its bus, by reception."""
         return latencies.deliveries(self.system, self.found)
 
     @cached_property
@@ -220,11 +220,11 @@ class Analysis:
 
     @cached_property
     def scaling(self) -> NetworkScaling | None:
-        """How far all execution times can be scaled together; buses stay as they are."""
+        """The factor of all execution times together; buses stay as they are."""
         return self.scaling_of(*self.tasks)
 
     def scaling_of(self, *names: str) -> NetworkScaling | None:
-        """How far the execution times of these tasks can be scaled, all others as they are."""
+        """The factor of the execution times of these tasks, with all others unchanged."""
         return network_scaling(self.network, set(names), FACTOR_STEPS)
 
 

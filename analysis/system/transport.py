@@ -1,18 +1,19 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""How long a value takes that travels in several frames (ISO-TP), from the bounds of its frames.
+"""The time of a value that travels in several frames (ISO-TP), from the bounds of its frames.
 
 The row of the sender makes a segment at the end of an execution, at most one in so many
 executions. The reception of the receiver asks for flow control, the next execution of the port
 region sends it, and the next execution of the row that begins after its reception goes on:
 
-  round trip   d = max(T, ceil((D + T_p + F) / T_r) T_r)
-  transfer     b d + (n - 1 - b) T + D, from the release that sends the first segment
-  cycle        b d + (n - 1 - b) T + T, from one value to the next
+    round trip   d = max(T, ceil((D + T_p + F) / T_r) T_r)
+    transfer     b d + (n - 1 - b) T + D, from the release that sends the first segment
+    cycle        b d + (n - 1 - b) T + T, from one value to the next
 
-with n segments in b blocks, T the distance of segments, T_r the period of the row, T_p that of
-the port region, D and F the delivery of a segment and of flow control, from their releases.
+Here n is the number of segments and b that of blocks. T is the distance of segments, T_r the
+period of the row, and T_p that of the port region. D and F are the delivery of a segment and of
+flow control, from their releases.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Transfer:
 
     @property
     def message(self) -> Message:
-        """What travels."""
+        """The message that is sent in segments."""
         return self.reception.message
 
     @property
@@ -77,7 +78,7 @@ class Transfer:
 
     @property
     def in_time(self) -> bool:
-        """No time-out passes while nothing is lost."""
+        """Whether no time-out passes while no frame is lost."""
         if self.round_trip is None or self.segment is None:
             return False
         return self.round_trip + self.segment <= self.transport.timeout

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A search for executions that meet the goals: guided by what is still to be shown, and repeatable.
+"""A repeatable search for executions that meet the goals, guided by the open goals.
 
 The interpreter is branched at instants where something new was shown or where the system is in a
 condition not seen before. From a branch it goes on with events and values from outside, or with

@@ -47,7 +47,7 @@ class Choice:
     is_port: bool
     type: Type | None
     numbers: tuple[int, ...]
-    """Those that matter: what the component compares with, and their neighbours."""
+    """The numbers that the component compares with, and their neighbours."""
     events: tuple[str, ...] = ()
     """The events that a port raises on arrival, staleness or overflow."""
     max_age: Ns | None = None

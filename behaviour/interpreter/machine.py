@@ -184,7 +184,7 @@ class Machine:
             due = before is None or (one.priority > before.priority)
             if port is None or not due or now < self.earliest[one.name]:
                 continue
-            if self.instances[port.instance].mailboxes[port.port].waiting:
+            if self.instances[port.instance].mailboxes[port.name].waiting:
                 self.earliest[one.name] = now + one.period
                 for slot in one.slots:
                     yield from self._execute(now, slot)
@@ -222,7 +222,7 @@ class Machine:
                 self._put(entry.end, entry.value)
 
     def _put(self, end: End, value: Value) -> None:
-        self.instances[end.instance].mailboxes[end.port].put(value)
+        self.instances[end.instance].mailboxes[end.name].put(value)
 
     def _execute(self, now: Ns, slot: Slot) -> Iterator[StepRecord]:
         """One execution of a row."""

@@ -69,7 +69,7 @@ class Arrived:
     @property
     def place(self) -> tuple[str, str]:
         """Instance and port."""
-        return self.end.instance, self.end.port
+        return self.end.instance, self.end.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +92,7 @@ def written_stimuli(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
                 assert value is not None
                 lines.append(f"- {{at: {at}, raise: {instance}.{event}, with: {_text(value)}}}")
             case Arrived(end=end, value=value):
-                place = f"{end.instance}.{end.port}"
+                place = f"{end.instance}.{end.name}"
                 lines.append(f"- {{at: {at}, put: {place}, value: {_text(value)}}}")
     lines.append(f"- {{until: {shown(stimuli.until) if stimuli.until else 0}}}")
     return "".join(f"{line}\n" for line in lines)

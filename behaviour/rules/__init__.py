@@ -10,6 +10,7 @@ impossible that is possible. Each finding of a possible situation has a way to i
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 
 from ravenchart.behaviour.limits import EFFORT, UNFINISHED, Behaviour
 from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
@@ -42,9 +43,9 @@ def findings(system: System, effort: int = EFFORT) -> tuple[Diagnostic, ...]:
     """The findings on the behaviour of a valid model, in order of location."""
     budget = Budget(effort)
     found: list[Diagnostic] = []
-    for component in system.components:
+    for rules, component in product((_of_component, protocols_followed), system.components):
         try:
-            for item in _of_component(component, system, budget):
+            for item in rules(component, system, budget):
                 found.append(item)
         except Exhausted:
             looked = f"{budget.situations} situations took all the work that a check may take"
@@ -62,7 +63,6 @@ def _of_component(component: Component, system: System, budget: Budget) -> Itera
             for rule in (*RULES, eventless_steps_end):
                 yield from rule(reach, thread)
     yield from invariants_hold(reach, system)
-    yield from protocols_followed(component, system, budget)
 
 
 def _limit(component: Component, how_far: str) -> Diagnostic:

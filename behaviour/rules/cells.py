@@ -29,6 +29,11 @@ MOST_CELLS = 12
 """The search does not distinguish the values of a variable with more cells."""
 
 
+PROTOCOL = "state of the protocol"
+"""The data item of a protocol (`protocols`): no model has this name. Control determines most of it,
+so all of its values are distinguished."""
+
+
 def expressions(component: Component) -> Iterator[Expression]:
     """Every expression that decides something, those in flows included."""
     yield from (invariant.condition for invariant in component.invariants)
@@ -81,7 +86,7 @@ def partition(
     found = {}
     for name in cuts:
         cells = _cells(types[name], cuts[name], initial[name])
-        if len(cells) <= MOST_CELLS:
+        if len(cells) <= MOST_CELLS or name[1] == PROTOCOL:
             found[name] = cells
     return found
 

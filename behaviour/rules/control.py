@@ -36,7 +36,7 @@ def _fired(thread: Thread) -> set[str]:
 
 
 def _model(reach: Reachable, thread: Thread, edge: Edge, condition: Term) -> Term | None:
-    """Data with which a step is made and a condition holds besides."""
+    """Data with which a step is made and a condition also holds."""
     solver = logic.solver()
     solver.add(*reach.typed, *reach.of_others(thread))
     solver.add(*reach.of_node(thread, edge.before.cells), edge.outcome.condition, condition)

@@ -22,7 +22,7 @@ from ravenchart.gen.origins import Origin
 
 from . import logic
 from .budget import Exhausted
-from .labels import active_leaves, step_label, valuation
+from .labels import active_leaves, begun_at, step_label, valuation
 from .logic import Term, Variable
 from .reach import Reachable
 from .schedule import PORTS, in_one_table, schedules
@@ -173,7 +173,7 @@ def _breaking_step(reach: Reachable, system: System, bad: Term) -> Broken | None
             model = _possible(reach, [*given, *here, condition, after])
             if model is not None:
                 data = valuation(reach, model, (bad, edge.outcome.condition))
-                return Broken(_step(thread, edge), _origin(thread, edge), data)
+                return Broken(_step(thread, edge), begun_at(thread.tree, edge.outcome), data)
     return None
 
 
@@ -278,13 +278,6 @@ def _step(thread: Thread, edge: Edge) -> str:
     return f"{thread.name}: {at} -{step_label(thread.tree, edge.outcome)}-> {to}"
 
 
-def _origin(thread: Thread, edge: Edge) -> Origin:
-    """The transition that a step begins with, or the region."""
-    fired = edge.outcome.fired[:1]
-    found = (t.origin for t in thread.tree.region.transitions if t.name in fired)
-    return next(found, thread.tree.region.origin)
-
-
 def _violated(reach: Reachable, invariant: Invariant, found: Violation) -> Diagnostic:
     message = f"the invariant {invariant.name} of {reach.component.name} is violated: {found.trace}"
     notes = [(invariant.origin, f"then {found.data}")] if found.data else []
@@ -296,10 +289,12 @@ def _not_inductive(one: OpenInvariant) -> Diagnostic:
     message = f"the invariant {invariant.name} is not proved: {broken.step} may violate it"
     data = f"when {broken.data}" if broken.data else "whatever the data"
     notes = [(broken.origin, f"the step violates it {data}")]
-    searched = (
-        f"no way from the start to it was found among {one.looked} situations"
-        if one.looked
-        else "there was no time left to look for a way from the start to it"
-    )
-    hint = f"{searched}; exclude it by a guard, or say more in the condition of `never`"
+    hint = f"{search_in_words(one)}; exclude it by a guard, or say more in the condition of `never`"
     return warning(NOT_PROVED, invariant.origin, message, notes=notes, hint=hint)
+
+
+def search_in_words(one: OpenInvariant) -> str:
+    """The search for a way from the start to a situation that violates it."""
+    if not one.looked:
+        return "there was no time left to look for a way from the start to it"
+    return f"no way from the start to it was found among {one.looked} situations"

@@ -12,6 +12,7 @@ import z3
 from ravenchart.behaviour.tree import ChartTree
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.statechart import After, Every
+from ravenchart.gen.origins import Origin
 
 from . import logic
 from .logic import Term, Variable
@@ -98,3 +99,10 @@ def way_to(reach: Reachable, thread: Thread, edge: Edge) -> str:
     way = reach.way(thread, edge.before)
     text = trace(thread.tree, way)
     return f"the way there: {text}" if len(way) > 1 else f"the way begins with {text}"
+
+
+def begun_at(tree: ChartTree, outcome: Outcome) -> Origin:
+    """The transition that a step begins with, or the region."""
+    taken = outcome.fired[:1]
+    found = (one.origin for one in tree.region.transitions if one.name in taken)
+    return next(found, tree.region.origin)

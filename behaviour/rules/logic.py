@@ -213,7 +213,7 @@ def readable(component: Component) -> dict[Variable, ScalarType]:
 
 
 def landmarks(expression: Expression) -> Iterable[tuple[Variable, int]]:
-    """Each integer that an expression compares with something a variable takes part in."""
+    """Each integer that an expression compares with a term that contains a variable."""
     if not isinstance(expression, Operation):
         return
     for operand in expression.operands:

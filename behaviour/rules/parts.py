@@ -102,7 +102,7 @@ class RegionParts:
                 yield from self.completed(other)
 
     def completed(self, part: Configuration) -> Iterator[Configuration]:
-        """The part of an orthogonal state when its regions have come to their ends."""
+        """The part of an orthogonal state when its regions have reached their ends."""
         state = self.leaf(part)
         if state not in self.tree.completing or state in part.completed:
             return

@@ -1,50 +1,71 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules of protocols: each client calls the commands of an interface in the declared order.
+"""Rules of protocols: each client calls the commands of a provider in the declared order.
 
-The state of the protocol is a data item of the client (`gen.derive.followed`), and a misuse is an
-invariant that excludes one value of it. So it is proved, or violated with a trace, as `invariants`
-does it.
+The state of the protocol is one data item more of the client, which follows its calls. A call that
+the state does not allow gives the item a value that it keeps. An invariant excludes that value: so
+it is proved, or violated with a trace, as `invariants` does it.
+
+The program collects the calls of a step and makes them behind it, in the order of the ports.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 
-from ravenchart.gen.derive.followed import Client, clients, misuses, watched_client
+import z3
+
+from ravenchart.behaviour.limits import MISUSED, NOT_FOLLOWED
+from ravenchart.gen.derive.clients import Client, clients
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
-from ravenchart.gen.model.component import Activity, Component
+from ravenchart.gen.language.terms import (
+    BOOLEAN,
+    EnumerationType,
+    Flow,
+    Literal,
+    Name,
+    Operation,
+    Reading,
+    Send,
+)
+from ravenchart.gen.model.component import Activity, Component, Data, Invariant
+from ravenchart.gen.model.protocols import Protocol
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
 from .budget import Budget
-from .invariants import OpenInvariant, open_invariants
+from .cells import PROTOCOL
+from .invariants import OpenInvariant, open_invariants, search_in_words
+from .logic import Term, Variable, variable
 from .reach import Reachable
+from .stepping import OpenStep
 
-MISUSED = "RV-1112"
-NOT_SHOWN = "RV-1113"
+ITEM = variable(Reading.DATA, PROTOCOL, None)
+"""The state of the protocol."""
 
 
 def protocols_followed(
     component: Component, system: System, budget: Budget
 ) -> Iterator[Diagnostic]:
-    """A client of an interface with a protocol calls its commands only where it may."""
+    """A client of a provider with a protocol calls its commands only where it may."""
     for client in clients(system):
         callers = client.callers
-        if client.component != component or not callers:
+        if client.component.name != component.name or not callers:
             continue
         reason = _hindrance(callers)
         if reason is not None:
-            yield _not_shown(client, callers[0], reason)
+            yield _not_checked(client, callers[0], reason)
             continue
-        known = {one.literal: one for one in misuses(client.protocol)}
-        reach = Reachable(watched_client(client, callers[0]), system, budget)
-        for found in open_invariants(reach, system):
-            misuse = known[found.invariant.name]
-            allowed = ", ".join(client.protocol.allowed(misuse.state)) or "no command"
-            what = f"{misuse.command} in the state {misuse.state} of {client.protocol.name}"
-            yield _misused(client, found, what, allowed)
+        own = [one for one in system.instances if one.name in client.instances]
+        others = [one for one in system.instances if one.component.name != component.name]
+        bound = replace(system, instances=(*others, *own))
+        step = partial(_FollowedStep, caller=callers[0].name, client=client)
+        reach = Reachable(_with_item(client, callers[0]), bound, budget, step)
+        for found in open_invariants(reach, bound):
+            yield _misused(client, found)
 
 
 def _hindrance(callers: tuple[Region | Activity, ...]) -> str | None:
@@ -58,23 +79,116 @@ def _hindrance(callers: tuple[Region | Activity, ...]) -> str | None:
     return None
 
 
-def _misused(client: Client, found: OpenInvariant, what: str, allowed: str) -> Diagnostic:
-    """A misuse that happens, or one that is not excluded."""
-    name, protocol = client.component.name, client.protocol
-    origin = found.invariant.origin
-    notes = [(protocol.origin, f"the protocol allows there: {allowed}")]
-    if found.violation is not None:
-        message = f"{name} calls {what}: {found.violation.trace}"
-        return error(MISUSED, origin, message, notes=notes)
-    message = f"{name} is not shown never to call {what}: {found.broken.step} may do it"
-    hint = f"no way to it was found among {found.looked} situations; exclude the call by a guard"
-    return warning(NOT_SHOWN, found.broken.origin, message, notes=notes, hint=hint)
+def _with_item(client: Client, caller: Region | Activity) -> Component:
+    """The component with the item, which the caller writes, and an invariant for each command."""
+    component, protocol = client.component, client.protocol
+    of_type = _values(protocol)
+    item = Data(PROTOCOL, protocol.origin, of_type, protocol.initial)
 
+    def never(command: str) -> Invariant:
+        value = Name(Reading.DATA, PROTOCOL, None, of_type)
+        wrong = Literal(_misuse(command), of_type)
+        return Invariant(command, caller.origin, Operation("=", (value, wrong), BOOLEAN))
 
-def _not_shown(client: Client, caller: Region | Activity, reason: str) -> Diagnostic:
-    message = (
-        f"the calls of {client.protocol.name} by {client.component.name} are not checked: {reason}"
+    def written(row: Region | Activity) -> tuple[str, ...]:
+        return (*row.writes, PROTOCOL) if row is caller else row.writes
+
+    return replace(
+        component,
+        data=(*component.data, item),
+        regions=tuple(replace(one, writes=written(one)) for one in component.regions),
+        activities=tuple(replace(one, writes=written(one)) for one in component.activities),
+        invariants=tuple(never(command) for command in client.in_order),
     )
+
+
+def _values(protocol: Protocol) -> EnumerationType:
+    """The states of a protocol, and a value for the misuse of each command."""
+    misuses = (_misuse(command) for command in protocol.commands)
+    return EnumerationType(PROTOCOL, protocol.origin, (*protocol.states, *misuses))
+
+
+def _misuse(command: str) -> str:
+    """The value that the item has after a call that was not allowed; no state has such a name."""
+    return f"not {command}"
+
+
+@dataclass
+class _FollowedStep(OpenStep):
+    """A step whose calls move the protocol on behind it."""
+
+    caller: str = ""
+    client: Client | None = None
+
+    def run(self) -> str | None:
+        """Make the step, then the calls that it has asked for."""
+        client = self.client
+        if client is None or self.tree.region.name != self.caller:
+            return super().run()
+        for command in client.in_order:
+            self.store[_asked(command)] = z3.BoolVal(False)
+        stuck = super().run()
+        value = self.read(ITEM)
+        for command in client.in_order:
+            asked = self.store.pop(_asked(command))
+            if not z3.is_false(asked):
+                value = z3.simplify(z3.If(asked, _after(client.protocol, command, value), value))
+                self.store[ITEM] = value
+        return stuck
+
+    def perform(self, flow: Flow) -> None:
+        """Execute a flow, and note the calls."""
+        for action in flow:
+            if isinstance(action, Send) and _asked(action.port) in self.store:
+                self.store[_asked(action.port)] = z3.BoolVal(True)
+            else:
+                super().perform((action,))
+
+
+def _asked(command: str) -> Variable:
+    """Whether the step has asked for a call: known within the step alone."""
+    return variable(Reading.DATA, f"{PROTOCOL}: call of {command}", None)
+
+
+def _after(protocol: Protocol, command: str, value: Term) -> Term:
+    """The item after a call; a value that says of a misuse stays."""
+    literals = _values(protocol).literals
+    found = value
+    for state in protocol.states:
+        target = protocol.after(state, command) or _misuse(command)
+        is_there = value == z3.IntVal(literals.index(state))
+        found = z3.If(is_there, z3.IntVal(literals.index(target)), found)
+    return found
+
+
+# --- Words ---------------------------------------------------------------------------
+
+
+def _misused(client: Client, found: OpenInvariant) -> Diagnostic:
+    """A call that is not allowed, or one that is not excluded."""
+    name, command, protocol = client.component.name, found.invariant.name, client.protocol
+    states = [state for state in protocol.states if protocol.after(state, command)]
+    notes = [
+        (protocol.origin, f"{protocol.name} allows {command} in: {', '.join(states)}"),
+        (protocol.origin, f"{client.instances[0]} calls {client.provider}"),
+    ]
+    if len(client.callers[0].sends) > 1:
+        order = ", ".join(client.in_order)
+        notes.append((found.invariant.origin, f"the calls of one step are made in order: {order}"))
+    if found.violation is not None:
+        message = f"{name} calls {command} where {protocol.name} does not allow it: "
+        message += found.violation.trace
+        hint = "call it in another step, or add a transition to the protocol"
+        return error(MISUSED, found.violation.origin, message, notes=notes, hint=hint)
+    message = f"{name} may call {command} where {protocol.name} does not allow it: "
+    message += f"{found.broken.step} is not excluded"
+    hint = f"{search_in_words(found)}; exclude the call by a guard"
+    return warning(NOT_FOLLOWED, found.broken.origin, message, notes=notes, hint=hint)
+
+
+def _not_checked(client: Client, caller: Region | Activity, reason: str) -> Diagnostic:
+    message = f"the calls of {client.protocol.name} by {client.component.name} are not checked: "
+    message += reason
     notes = [(client.protocol.origin, "the protocol is declared here")]
     hint = "call the commands of the protocol from one region, or from one activity with actions"
-    return warning(NOT_SHOWN, caller.origin, message, notes=notes, hint=hint)
+    return warning(NOT_FOLLOWED, caller.origin, message, notes=notes, hint=hint)

@@ -18,7 +18,7 @@ the regions of an orthogonal state are explored one by one (`parts`).
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -37,7 +37,7 @@ from .logic import Term, Variable
 from .outcomes import Outcome, outcomes
 from .outside import as_region, done_of, external_events, instance_parameters
 from .publishing import is_in, is_in_parts
-from .stepping import Configuration
+from .stepping import Configuration, OpenStep
 from .threads import MOST_QUESTIONS, Cells, Edge, Situation, Thread
 
 PendingStep = tuple[Situation, Configuration, Occurrence | None]
@@ -47,8 +47,16 @@ PendingStep = tuple[Situation, Configuration, Occurrence | None]
 class Reachable:
     """The reachable nodes of every thread of a component."""
 
-    def __init__(self, component: Component, system: System, budget: Budget) -> None:
+    def __init__(
+        self,
+        component: Component,
+        system: System,
+        budget: Budget,
+        make: Callable[..., OpenStep] = OpenStep,
+    ) -> None:
+        """``make`` begins a step."""
         self.component = component
+        self.make = make
         self.budget = budget
         self.types = logic.readable(component)
         self.symbols: dict[Variable, Term] = {}
@@ -293,7 +301,7 @@ class Reachable:
         made = thread.steps if is_exact else thread.exact
         key = (at, occurrence)
         if key not in made:
-            made[key] = outcomes(thread.tree, at, occurrence, self.plain)
+            made[key] = outcomes(thread.tree, at, occurrence, self.plain, make=self.make)
         return made[key]
 
     def _outcomes(
@@ -304,7 +312,7 @@ class Reachable:
         if key not in thread.steps:
             contested = None if thread.parts is None else thread.parts.contested(at)
             thread.steps[key] = outcomes(
-                thread.tree, at, occurrence, self.plain, thread.past, contested
+                thread.tree, at, occurrence, self.plain, thread.past, contested, self.make
             )
         return thread.steps[key]
 

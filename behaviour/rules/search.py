@@ -23,9 +23,10 @@ from ravenchart.behaviour.tree import CONDITIONS, START, Occurrence
 from ravenchart.gen.language.terms import BOOLEAN, Reading
 from ravenchart.gen.model.statechart import DONE, After, Every, Overflow, Transition
 from ravenchart.gen.model.system import System
+from ravenchart.gen.origins import Origin
 
 from . import logic
-from .labels import active_leaves, step_label
+from .labels import active_leaves, begun_at, step_label
 from .logic import Term, Variable
 from .outcomes import Outcome
 from .outside import external_events
@@ -79,6 +80,8 @@ class Violation:
 
     trace: str
     data: str
+    origin: Origin
+    """The transition of the last step, or its row."""
 
 
 @dataclass
@@ -95,6 +98,8 @@ class WaySearch:
     def __post_init__(self) -> None:
         self.threads = _cone(self.reach, self.bad)
         self.names = {str(name): name for name in self.reach.types}
+        self.readings: dict[str, tuple[Variable, int]] = {}
+        """The unknowns for values from outside: what each is of, and the step that reads it."""
         self.external: dict[str, list[str | None]] = {}
         """Events from outside, with the rows that raise them."""
         for event, row in external_events(self.reach.component, self.system):
@@ -115,7 +120,8 @@ class WaySearch:
             if self.possible(point, wrong):
                 model = point.way.model(wrong)
                 if model is not None:
-                    return Violation(self.told(point.way), point.way.data(model, wrong))
+                    data = point.way.data(model, wrong)
+                    return Violation(self.told(point.way), data, self._end(point.way))
             solver = logic.solver()
             solver.set("rlimit", 10 * logic.EFFORT)
             solver.add(*point.way.terms)
@@ -182,7 +188,9 @@ class WaySearch:
 
     def read(self, name: Variable, number: int) -> Term:
         """The unknown for a value from outside that a step reads."""
-        return logic.symbol(f"{name}@{number}", self.reach.types[name])
+        text = f"{name}@{number}"
+        self.readings[text] = name, number
+        return logic.symbol(text, self.reach.types[name])
 
     def possible(self, point: Point, *conditions: Term) -> bool:
         """Whether some data from outside lead to a situation and meet conditions there."""
@@ -205,12 +213,8 @@ class WaySearch:
 
     def outside_in(self, terms: Iterable[Term]) -> dict[tuple[Variable, int], Term]:
         """The values from outside in some terms, with the number of the step that read each."""
-        found = {}
-        for text, term in logic.unknowns(terms).items():
-            name, _, number = text.rpartition("@")
-            if name in self.names:
-                found[self.names[name], int(number)] = term
-        return found
+        named = logic.unknowns(terms).items()
+        return {self.readings[text]: term for text, term in named if text in self.readings}
 
     # --- steps
 
@@ -372,6 +376,13 @@ class WaySearch:
             yield CONDITIONS, NOTHING
 
     # --- words
+
+    def _end(self, way: TimedWay) -> Origin:
+        """The transition that the last step begins with, or the row; without one the component."""
+        if not way.steps:
+            return self.reach.component.origin
+        last = way.steps[-1]
+        return begun_at(self.reach.thread(last.thread).tree, last.outcome)
 
     def told(self, way: TimedWay) -> str:
         """A way as text: each step, with its region when there are several."""

@@ -172,7 +172,7 @@ class TimedWay:
         return terms
 
     def _can_wait(self, name: str, here: Point, number: int) -> Term:
-        """That an execution of a thread comes to nothing."""
+        """That an execution of a thread has no effect."""
         search = self.search
         thread = search.reach.thread(name)
         at, queue, kept, _ = here.status[name]

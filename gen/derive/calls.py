@@ -17,6 +17,7 @@ from ravenchart.gen.model.commands import (
     Server,
 )
 from ravenchart.gen.model.component import Activity, Component
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
@@ -34,29 +35,34 @@ def publications(system: System, instance: str, row: Region | Activity) -> tuple
         if message.every
         and message.source is not None
         and message.source.instance == instance
-        and message.source.port in row.writes
+        and message.source.name in row.writes
     )
 
 
-def rows_of(system: System, binding: Binding) -> tuple[str, ...]:
+def asking(system: System, binding: Binding) -> tuple[End, ...]:
     """The rows of the instance that use the command."""
     need = binding.need
     return tuple(
-        f"{binding.instance}.{row.name}"
+        End(binding.instance, row.name)
         for row in system.instance(binding.instance).component.runnables()
         if need.name in (row.reads if need.is_read else row.sends)
     )
 
 
-def callers(system: System, device: Device) -> tuple[str, ...]:
+def rows_of(system: System, binding: Binding) -> tuple[str, ...]:
+    """The ids of the rows that use the command."""
+    return tuple(map(str, asking(system, binding)))
+
+
+def callers(system: System, device: Device) -> tuple[End, ...]:
     """The rows that call a piece of equipment, each once."""
     rows = (
         row
         for binding in system.bindings
         if isinstance(binding.provider, Device) and device in binding.provider.leaves()
-        for row in rows_of(system, binding)
+        for row in asking(system, binding)
     )
-    handlers = (f"{poll.instance}.ports" for poll in system.polls if poll.device == device)
+    handlers = (End(poll.instance, "ports") for poll in system.polls if poll.device == device)
     return tuple(dict.fromkeys((*rows, *handlers)))
 
 
@@ -123,10 +129,15 @@ def callers_of(system: System, instance: str, provided: Provided) -> tuple[Bindi
     )
 
 
+def serving(server: Server) -> End:
+    """The row that executes the commands of an interface."""
+    return End(server.instance, str(server.interface.server))
+
+
 def repliers(system: System, binding: Binding) -> tuple[str, ...]:
     """The rows that deliver the replies to a call: whoever makes it, serves or receives it."""
     if isinstance(binding.provider, Server):
-        return (f"{binding.provider.instance}.{binding.provider.interface.server}",)
+        return (str(serving(binding.provider)),)
     if isinstance(binding.provider, Remote):
         return receivers(system, binding.provider.reply)
     return rows_of(system, binding) if binding.provider is not None else ()

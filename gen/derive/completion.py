@@ -204,19 +204,14 @@ def on_one_node(system: System) -> System:
 def objects_of(system: System) -> tuple[SharedObject, ...]:
     """Every protected object of the generated programs, with its users and ceiling.
 
-    ``system`` has its tasks. Where there are several nodes, objects that each of them has by
-    the same name have the node's name in front.
+    ``system`` has its tasks. Where there are several nodes, an object of which each may have one
+    of the same name has the node's name in front.
     """
     parts = programs(system)
     if len(parts) == 1:
         return objects_on_node(parts[0])
-    own = {instance.name for instance in system.instances} | {node.name for node in system.nodes}
-    own |= {processor.name for processor in system.processors}
-    own = {name.partition(".")[0] for name in own}
     return tuple(
-        item
-        if item.element.partition(".")[0] in own
-        else replace(item, element=f"{item.node}.{item.element}")
+        replace(item, element=f"{item.node}.{item.element}") if item.on_each_node else item
         for part in parts
         for item in objects_on_node(part)
     )

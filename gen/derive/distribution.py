@@ -81,8 +81,8 @@ class Carrier:
         """A message with the value of the connection's source, laid out as small as it is."""
         end = connection.source
         component = self.instances[end.instance].component
-        name, type_ = f"{path_name(end.instance)}_{end.port}", component.port(end.port).type
-        period = component.send_period(end.port)
+        name, type_ = f"{path_name(end.instance)}_{end.name}", component.port(end.name).type
+        period = component.send_period(end.name)
         if self.bus is None or period is None or problem_of(name) is not None:
             return None
         signals = signals_of(type_)

@@ -37,10 +37,10 @@ from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Chain, System
+from ravenchart.gen.model.system import Carried, Chain, System
 from ravenchart.gen.origins import Origin
 
-from .calls import awaited, published_by, readers
+from .calls import awaited, published_by, readers, serving
 from .identifiers import OPEN
 
 NUMBER = IntegerType("Call_Number", BUILT_IN, 0, 255)
@@ -197,7 +197,8 @@ def _call(system: System, binding: Binding) -> _Call | None:
         targets=(End(binding.instance, f"{need.name}_Reply"),),
         period=named(server_component.activities, str(server.interface.server)).timing.period,
     )
-    chain = Chain(call, binding.origin, (call, remote.served, reply), reaction=limit, age=None)
+    path = (Carried(call), serving(server), Carried(reply))
+    chain = Chain(call, binding.origin, path, reaction=limit, age=None)
     messages = tuple(_laid_out(one, system) for one in (here, back))
     return _Call(providers, messages, (chain,), (NUMBER, here.type, back.type))
 
@@ -251,7 +252,7 @@ def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
             executions=-(-limit // watcher.timing.period) + 1,
             watcher=watcher.name,
         )
-        path = (name, f"{one.instance}.{watcher.name}")
+        path = (Carried(name), End(one.instance, watcher.name))
         chains.append(Chain(_called(one), one.origin, path, reaction=None, age=limit))
     every = max(1, min(periods) // writer.timing.period)
     message = Message(

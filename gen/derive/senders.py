@@ -8,6 +8,8 @@ from __future__ import annotations
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.system import System
 
+from .calls import serving
+
 
 def sender_of(system: System, message: Message) -> str | None:
     """The processor whose row sends a message; None for one from outside."""
@@ -22,11 +24,11 @@ def sending_rows(system: System, message: Message) -> tuple[str, ...]:
         return ()
     source = system.instance(message.source.instance)
     if message.call is not None and message.is_reply:
-        return (message.call.served,)
+        return (str(serving(message.call.server)),)
     if message.controls:
         return (f"{source.name}.ports",)
     return tuple(
         f"{source.name}.{item.name}"
         for item in source.component.runnables()
-        if message.source.port in (item.writes if message.every else item.sends)
+        if message.source.name in (item.writes if message.every else item.sends)
     )

@@ -48,6 +48,10 @@ class _Sharing:
         ceiling = max((self.priorities[user] for user in once), default=0)
         return SharedObject(element, node.name, once, ceiling, node.critical_section)
 
+    def made_on_each(self, element: str, users: Iterable[str]) -> SharedObject:
+        """An object as `made`, of which other nodes may have one of the same name."""
+        return replace(self.made(element, users), on_each_node=True)
+
     def runs(self, instance: str, name: str) -> str:
         """The processor that runs a row."""
         return self.system.processor_of(f"{instance}.{name}").name
@@ -135,25 +139,25 @@ class _Sharing:
         for device in self.system.devices:
             if device.type is None:
                 continue
-            users = [self.system.processor_of(row).name for row in callers(self.system, device)]
+            users = [self.runs(row.instance, row.name) for row in callers(self.system, device)]
             life = device.type.lifecycle
             if life.given:
                 users += [MAIN, *(supervisors if life.make_safe is not None else ())]
             if len(set(users)) > 1:
-                made = self.made(device.name, users)
+                made = self.made_on_each(device.name, users)
                 longest = max(*(one.wcet for one in device.provides), life.make_safe or Ns(0))
                 yield replace(made, section=max(made.section, longest))
 
     def writers(self, instance: str, port: str) -> Iterable[str]:
         """The processors that put values into an input port's mailbox."""
         for connection in self.system.connections:
-            if (connection.target.instance, connection.target.port) == (instance, port):
+            if (connection.target.instance, connection.target.name) == (instance, port):
                 source = self.system.instance(connection.source.instance)
                 for sender in source.component.runnables():
-                    if connection.source.port in sender.sends:
+                    if connection.source.name in sender.sends:
                         yield self.runs(source.name, sender.name)
         for message in self.system.messages:
-            if any((end.instance, end.port) == (instance, port) for end in message.targets):
+            if any((end.instance, end.name) == (instance, port) for end in message.targets):
                 yield from (p.name for p in self.system.processors if p.released_by == message.bus)
 
     def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
@@ -275,13 +279,13 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         senders += sharing.requesting(bus)
         receivers = [p.name for p in system.processors if p.released_by == bus.name]
         drivers = [t.element for t in tasks if t.driver_of == bus.name]
-        objects.append(sharing.made(f"{bus.name}.transmit", [*senders, *drivers]))
-        objects.append(sharing.made(f"{bus.name}.receive", [*drivers, *receivers]))
+        objects.append(sharing.made_on_each(f"{bus.name}.transmit", [*senders, *drivers]))
+        objects.append(sharing.made_on_each(f"{bus.name}.receive", [*drivers, *receivers]))
         for message in system.messages:
             if message.bus == bus.name and message.transport is not None:
                 rows = sending_rows(system, message) or [f"{message.targets[0].instance}.ports"]
                 ends = [system.processor_of(row).name for row in rows]
-                objects.append(sharing.made(f"{message.element}.flow", [*ends, *receivers]))
+                objects.append(sharing.made_on_each(f"{message.element}.flow", [*ends, *receivers]))
     for processor in system.processors:
         watched_by = sharing.supervisor(processor)
         users = [processor.name, *([] if watched_by is None else [watched_by])]
@@ -296,7 +300,7 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         for name in kept:
             #  The main program runs on the first core, and looks at the others' at the end.
             own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)
-            objects.append(sharing.made(own, users))
+            objects.append(sharing.made_on_each(own, users))
     for node in system.nodes:
         for name, kind in ((SUPERVISOR, node.supervision), (PROBE, node.probe)):
             element = f"{node.name}.{name}"

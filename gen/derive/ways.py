@@ -16,10 +16,11 @@ from dataclasses import replace
 from itertools import pairwise
 
 from ravenchart.gen.model.commands import Server
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import OnEvent
 from ravenchart.gen.model.system import Carried, Chain, Gap, Stop, System
 
-from .calls import published_by, rows_of
+from .calls import asking, published_by, serving
 
 Flow = Mapping[Stop, Sequence[Stop]]
 """The stops that values go to from each stop, in model order."""
@@ -34,33 +35,31 @@ def flow_of(system: System) -> Flow:
         known |= {item.name for item in component.data}
         known |= {region.name for region in component.regions}
         for row in component.runnables():
-            own = f"{instance.name}.{row.name}"
+            own = End(instance.name, row.name)
             for name in row.reads:
                 if name in known and name != row.name:
-                    flow[f"{instance.name}.{name}"].append(own)
-            flow[own] += [f"{instance.name}.{name}" for name in (*row.writes, *row.sends)]
+                    flow[End(instance.name, name)].append(own)
+            flow[own] += [End(instance.name, name) for name in (*row.writes, *row.sends)]
     for binding in system.bindings:
         provider, need = binding.provider, binding.need
         if isinstance(provider, Server):
             item = published_by(binding)
             if item is not None:
-                flow[f"{provider.instance}.{item}"] += rows_of(system, binding)
+                flow[End(provider.instance, item)] += asking(system, binding)
             elif provider.interface.server is not None:
-                served = f"{provider.instance}.{provider.interface.server}"
-                flow[f"{binding.instance}.{need.name}"].append(served)
+                flow[End(binding.instance, need.name)].append(serving(provider))
         elif provider is None and need.stand_in is not None:
-            own = f"{binding.instance}.{need.stand_in.item}"
-            flow[own] += rows_of(system, binding)
+            flow[End(binding.instance, need.stand_in.item)] += asking(system, binding)
     for connection in system.connections:
-        flow[str(connection.source)].append(str(connection.target))
+        flow[connection.source].append(connection.target)
     for message in (m for m in system.messages if not m.controls):
         if message.source is not None:
-            flow[str(message.source)].append(Carried(message.name))
-        flow[Carried(message.name)] += map(str, message.targets)
+            flow[message.source].append(Carried(message.name))
+        flow[Carried(message.name)] += message.targets
         if message.call is not None:
-            served = message.call.served
-            way = (served, message.source) if message.is_reply else (message.targets[0], served)
-            flow[str(way[0])].append(str(way[1]))
+            served = serving(message.call.server)
+            reply = message.source if message.is_reply else None
+            flow[served if reply else message.targets[0]].append(reply or served)
     return flow
 
 
@@ -74,15 +73,15 @@ def _event_over(
     for instance in system.instances:
         component = instance.component
         taken = [
-            (f"{instance.name}.{region.name}", transition.trigger.event)
+            (End(instance.name, region.name), transition.trigger.event)
             for region in component.regions
             for transition in region.transitions
             if isinstance(transition.trigger, OnEvent)
         ]
-        raised = [(f"{instance.name}.{r.name}", e) for r in component.runnables() for e in r.raises]
+        raised = [(End(instance.name, r.name), e) for r in component.runnables() for e in r.raises]
         ports = (port for port in component.ports if not port.is_command)
         raised += [
-            (f"{instance.name}.{port.name}", event)
+            (End(instance.name, port.name), event)
             for port in ports
             for event in (port.on_arrival, port.on_stale, port.on_overflow)
             if event is not None
@@ -91,7 +90,7 @@ def _event_over(
             for region, wanted in taken:
                 fits = wanted == event and place != region
                 if fits and _shortest(flow, before, place) and _shortest(flow, region, after):
-                    return event, place, region
+                    return event, str(place), str(region)
     return None
 
 
@@ -101,16 +100,10 @@ def routed(system: System) -> System:
     return replace(system, chains=tuple(_routed(chain, system, flow) for chain in system.chains))
 
 
-def _stop(place: str) -> Stop:
-    """A stop as the path of a chain names it: elements have a dot, messages none."""
-    return place if "." in place else Carried(place)
-
-
 def _routed(chain: Chain, system: System, flow: Flow) -> Chain:
     """A chain with its way, or the gap in it."""
-    nodes = [_stop(place) for place in chain.path]
-    way = nodes[:1]
-    for before, after in pairwise(nodes):
+    way = [*chain.path[:1]]
+    for before, after in pairwise(chain.path):
         part = _shortest(flow, before, after)
         if not part:
             return replace(chain, way=(), gap=_gap(system, flow, before, after))

@@ -68,14 +68,14 @@ def end_port(system: System, message: Message, end: End) -> str:
     """Where a message begins or ends at an instance: a port, or the interface of a command."""
     component = system.instance(end.instance).component
     for need in component.needs:
-        if end.port in (need.name, need.reply_item):
+        if end.name in (need.name, need.reply_item):
             return required_port(need.interface)
     if message.call is not None:
         return provided_port(message.call.server.interface.name)
     for provided in component.provides:
-        if message.every and end.port in (one.item for one in provided.published):
+        if message.every and end.name in (one.item for one in provided.published):
             return provided_port(provided.name)
-    return end.port
+    return end.name
 
 
 def interface_cell(port: str, name: str) -> str:

@@ -59,7 +59,7 @@ class _Drawing:
         self.system = system
         self.position = {name: index for index, name in enumerate(_order(system))}
         self.on_right = {
-            (end.instance, end.port): self.position[end.instance] < self.position[other]
+            (end.instance, end.name): self.position[end.instance] < self.position[other]
             for wire in reversed(system.connections)
             for end, other in (
                 (wire.source, wire.target.instance),
@@ -204,7 +204,7 @@ class _Drawing:
 
     def _port(self, end: End) -> str:
         """A port and its side."""
-        return f"{end.port}:{'e' if self.on_right[end.instance, end.port] else 'w'}"
+        return f"{end.name}:{'e' if self.on_right[end.instance, end.name] else 'w'}"
 
     def _end(self, message: Message, end: End) -> str:
         """The port or interface where a message begins or ends, and its side."""

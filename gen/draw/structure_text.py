@@ -52,11 +52,11 @@ def _end(system: System, end: End) -> str:
     """A port, or the instance where a call or reply ends at none."""
     component = system.instance(end.instance).component
     ports = {port.name for port in component.ports if not port.is_command}
-    return _port(end) if end.port in ports else path_name(end.instance)
+    return _port(end) if end.name in ports else path_name(end.instance)
 
 
 def _port(end: End) -> str:
-    return f"{path_name(end.instance)}_{end.port}"
+    return f"{path_name(end.instance)}_{end.name}"
 
 
 def _boxed(box: Instance | Box) -> Iterator[str]:
@@ -101,7 +101,7 @@ def mermaid(system: System) -> str:
     lines += [f'  bus_{bus.name}[("bus {bus.name}")]' for bus in system.buses]
     for wire in system.connections:
         source, target = wire.source, wire.target
-        label = f"{source.port} to {target.port}"
+        label = f"{source.name} to {target.name}"
         lines.append(f'  {_shape(source.instance)} -->|"{label}"| {_shape(target.instance)}')
     for link in device_links(system):
         provider = _shape(link.provider) if link.interface else f"device_{link.provider}"

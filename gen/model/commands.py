@@ -323,11 +323,6 @@ class Remote:
     """From the release of the caller until the reply has arrived; 0 without replies."""
     executions: int
 
-    @property
-    def served(self) -> str:
-        """The row that executes the command."""
-        return f"{self.server.instance}.{self.server.interface.server}"
-
 
 @dataclass(frozen=True, slots=True)
 class RemoteRead:

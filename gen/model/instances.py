@@ -15,14 +15,14 @@ from .component import Component
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """One end of a connection: a port of an instance."""
+    """A port, row or data item of an instance: one end of a connection, or a place on a way."""
 
     instance: str
-    port: str
+    name: str
 
     def __str__(self) -> str:
-        """``instance.port``."""
-        return f"{self.instance}.{self.port}"
+        """``instance.name``."""
+        return f"{self.instance}.{self.name}"
 
 
 @dataclass(frozen=True, slots=True)

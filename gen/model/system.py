@@ -77,7 +77,7 @@ class Slot:
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
-    That is a bus whose frames it receives, or a queued input port, ``instance.port``.
+    That is a bus whose frames it receives, or a queued input port.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -90,7 +90,7 @@ class Processor:
     deadline: Ns
     priority: int
     stack_bytes: int
-    released_by: str | None
+    released_by: str | End | None
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
@@ -106,8 +106,7 @@ class Processor:
     @property
     def released_by_port(self) -> End | None:
         """The queued port whose values release it; None where time or a bus does."""
-        instance, dot, port = (self.released_by or "").rpartition(".")
-        return End(instance, port) if dot else None
+        return self.released_by if isinstance(self.released_by, End) else None
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
@@ -176,6 +175,8 @@ class SharedObject:
     ceiling: int
     section: Ns
     """Longest time inside it."""
+    on_each_node: bool = False
+    """Whether other nodes may have an object of the same name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,8 +190,8 @@ class Carried:
         return self.message
 
 
-Stop = Carried | str
-"""A place on a way; rows, ports and data by their elements, ``owner.name``."""
+Stop = Carried | End
+"""A place on a way: a message, or a row, port or data item of an instance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,14 +214,14 @@ class Gap:
 class Chain:
     """A way that values take, and how long it may take them; None: no limit.
 
-    ``path`` names messages and rows (``owner.name``), in order; between two of
-    them the shortest way is meant. `ways` fills in ``way``, all its places, or the
-    ``gap`` between two of the path that no values cross.
+    ``path`` has messages and rows, in order; between two of them the shortest way is
+    meant. `ways` fills in ``way``, all its places, or the ``gap`` between two of the
+    path that no values cross.
     """
 
     name: str
     origin: Origin
-    path: tuple[str, ...]
+    path: tuple[Stop, ...]
     reaction: Ns | None
     """From an input until the first output that knows it."""
     age: Ns | None
@@ -330,15 +331,15 @@ class System:
         homes = tuple(dict.fromkeys(self.home(end) for end in message.targets))
         return tuple(Reception(message, home, len(homes) > 1) for home in homes)
 
-    def received(self, bus: str | None, node: str) -> tuple[Reception, ...]:
+    def received(self, bus: str | End | None, node: str) -> tuple[Reception, ...]:
         """The receptions of a node from a bus, in model order."""
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
 
     def reception(self, message: Message, place: Stop | None) -> Reception | None:
-        """That of the node of a target port, ``instance.port``; of any other place, the first."""
+        """That of the node of a target port; of any other place, the first."""
         found = self.receptions(message)
-        homes = (self.home(end) for end in message.targets if str(end) == place)
+        homes = (self.home(end) for end in message.targets if end == place)
         at = next(homes, found[0].node if found else None)
         return next((one for one in found if one.node == at), None)
 
@@ -391,14 +392,13 @@ class System:
     def _processors(self) -> dict[str, Processor]:
         return {slot.element: p for p in reversed(self.processors) for slot in reversed(p.slots)}
 
-    def woken_by(self, place: str) -> Processor | None:
-        """The processor that an input port, ``instance.port``, releases; None where none is."""
-        return self._woken.get(place)
+    def woken_by(self, port: End) -> Processor | None:
+        """The processor that an input port releases; None where none is."""
+        return self._woken.get(port)
 
     @cached_property
-    def _woken(self) -> dict[str, Processor]:
-        found = ((str(p.released_by_port), p) for p in self.processors if p.released_by_port)
-        return dict(found)
+    def _woken(self) -> dict[End, Processor]:
+        return {p.released_by_port: p for p in self.processors if p.released_by_port}
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""

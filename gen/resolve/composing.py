@@ -282,6 +282,8 @@ class _Composing:
                 if form.has(key):
                     message = f"`{key}` has no meaning for {name}, which leads to another interface"
                     hint = "list the names of all its commands and events under `commands`"
+                    if key == "protocol":
+                        hint = f"move it to the component that provides {name} in the end"
                     self.findings.error("RV-0806", form.at_key(key), message, hint=hint)
             commands: set[str] = set()
             damaged = form.damaged
@@ -419,6 +421,6 @@ def _size(of: Parts | Composite) -> int:
 
 def _under(path: str, wire: Connection) -> Connection:
     """A connection in the instance at the path."""
-    source = End(f"{path}.{wire.source.instance}", wire.source.port)
-    target = End(f"{path}.{wire.target.instance}", wire.target.port)
+    source = End(f"{path}.{wire.source.instance}", wire.source.name)
+    target = End(f"{path}.{wire.target.instance}", wire.target.name)
     return Connection(wire.origin, source, target)

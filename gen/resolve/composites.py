@@ -128,7 +128,7 @@ def within(path: str, of: Parts | Composite, port: Port) -> Ends:
     if isinstance(of, Parts):
         return ((End(path, port.name), port),)
     found = of.leads.get(port.name.lower(), ())
-    return tuple((End(f"{path}.{end.instance}", end.port), own) for end, own in found)
+    return tuple((End(f"{path}.{end.instance}", end.name), own) for end, own in found)
 
 
 def required_by(component: Component, *, damaged: bool) -> NameScope[Interface]:

@@ -26,14 +26,17 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
 from ravenchart.gen.model.component import Direction
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.nodes import Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     UNFIT_PORT,
+    Carried,
     Chain,
     Processor,
     Shutdown,
     Slot,
+    Stop,
     Work,
 )
 from ravenchart.gen.origins import Origin
@@ -212,8 +215,8 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
     )
 
 
-def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
-    """The bus, or the input port as ``instance.port``, that releases a processor."""
+def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | None:
+    """The bus or input port that releases a processor."""
     if "." not in text:
         if not site.buses.knows(text):
             site.owners.used(text, origin, site.findings)  # the name of a bus or an instance
@@ -237,14 +240,16 @@ def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | None:
         return None
     instance, parts, name = found
     port = connectable(parts).look_up(name, origin, site.findings)
-    if port is not None and port.direction is not Direction.IN:
-        end = f"{instance.name}.{port.name}"
+    if port is None:
+        return None
+    end = End(instance.name, port.name)
+    if port.direction is not Direction.IN:
         message = f"{end} is an output port: only an input port releases a processor"
         notes = [(port.origin, f"`{port.name}` is declared here")]
         hint = "name the queued input port that it is connected to"
         site.findings.error(UNFIT_PORT, origin, message, notes=notes, hint=hint)
         return None
-    return None if port is None else f"{instance.name}.{port.name}"
+    return end
 
 
 def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames) -> Slot | None:
@@ -310,14 +315,14 @@ def chain_of(
     name: str, form: ChainForm, messages: NameScope[Message], site: DeploymentNames
 ) -> Chain | None:
     """A chain whose messages and rows exist."""
-    places: list[str | None] = []
+    places: list[Stop | None] = []
     for index, text in enumerate(form.path):
         origin = form.item_at("path", index)
         if "." in text:
             places.append(_row_at(text, origin, site))
         else:
             message = messages.look_up(text, origin, site.findings)
-            places.append(None if message is None else message.name)
+            places.append(None if message is None else Carried(message.name))
     if form.reaction is None and form.age is None and not form.damaged:
         message_text = f"the chain {name} has no limit"
         hint = "add `reaction:`, `age:`, or both"
@@ -329,14 +334,14 @@ def chain_of(
     return Chain(name, form.origin, tuple(p for p in places if p), reaction, age)
 
 
-def _row_at(text: str, origin: Origin, site: DeploymentNames) -> str | None:
-    """The id of the row ``instance.name``."""
+def _row_at(text: str, origin: Origin, site: DeploymentNames) -> End | None:
+    """The row ``instance.name``."""
     found = member_of(text, "a message or instance.row", origin, site)
     if found is None:
         return None
     instance, parts, own = found
     row = parts.rows.look_up(own, origin, site.findings)
-    return None if row is None else f"{instance.name}.{row}"
+    return None if row is None else End(instance.name, row)
 
 
 def shutdown_of(form: ShutdownForm | None, site: DeploymentNames) -> Shutdown:

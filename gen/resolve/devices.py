@@ -87,9 +87,10 @@ def device_type_of(
     parameters, registers = device_parameters(form, types, findings), registers_of(form, findings)
     before = findings.count()
     commands = (one.command for one in found.sound())
-    protocol = protocol_of(name, form.protocol, commands, findings)
-    lost = form.damaged or parameters is None or registers is None or findings.count() > before
-    if len(found.sound()) < len(form.provides) or lost:
+    lost = form.damaged or len(found.sound()) < len(form.provides)
+    protocol = protocol_of(name, form.protocol, commands, findings, damaged=lost)
+    lost = lost or parameters is None or registers is None or findings.count() > before
+    if lost:
         return None
     simulated = form.body == "simulated"
     return DeviceType(

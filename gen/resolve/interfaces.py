@@ -457,7 +457,9 @@ def provided_of(
         requests.declare(command.name, at, Published(command, data.name), findings)
     events = _events(name, form, Direction.OUT, dictionary, types, members, findings)
     sound = requests.sound()
-    protocol = protocol_of(name, form.protocol, (one.command for one in sound), findings)
+    commands = (one.command for one in sound)
+    lost = findings.count() > before or form.damaged
+    protocol = protocol_of(name, form.protocol, commands, findings, damaged=lost)
     if findings.count() > before or form.damaged:
         return None
     return Provided(

@@ -84,28 +84,24 @@ class _Placing:
                 for p in of.component.parameters
                 if (value := values[p.name.lower()][1]) is not None
             )
-            made = Instance(
-                path, origin, of.component, self.node, own, delegations, self.composites
-            )
+            theirs = tuple(one for one in delegations if one.end.instance == path)
+            made = Instance(path, origin, of.component, self.node, own, theirs, self.composites)
             if site.owners.declare(path, origin, made, site.findings):
                 site.instances.declare(path, origin, made)
             return
         if not site.owners.declare(path, origin, Placed(path, origin, of), site.findings):
             return
-        known = {(one.end.instance, one.end.port) for one in delegations}
+        known = {(one.end.instance, one.end.name) for one in delegations}
         own_ends = (one for one in _delegations(path, form, of))
-        all_of_them = (
+        delegations = (
             *delegations,
-            *(one for one in own_ends if (one.end.instance, one.end.port) not in known),
+            *(one for one in own_ends if (one.end.instance, one.end.name) not in known),
         )
         passing = Passing(of.members.parameters, values)
         placing = replace(self, composites=(*self.composites, of.name))
         for inside in of.inside.sound():
             inner = f"{path}.{inside.name}"
-            theirs = tuple(
-                one for one in all_of_them if f"{one.end.instance}.".startswith(f"{inner}.")
-            )
-            placing.declare(inner, inside.form, inside.of, passing, theirs)
+            placing.declare(inner, inside.form, inside.of, passing, delegations)
 
 
 def _delegations(

@@ -17,9 +17,17 @@ WRONG = "RV-1219"
 
 
 def protocol_of(
-    owner: str, form: ProtocolForm | None, provided: Iterable[Command], findings: Findings
+    owner: str,
+    form: ProtocolForm | None,
+    provided: Iterable[Command],
+    findings: Findings,
+    *,
+    damaged: bool,
 ) -> Protocol | None:
-    """The protocol of an interface or device type that provides these commands."""
+    """The protocol of an interface or device type that provides these commands.
+
+    Of a ``damaged`` one some commands may be lost.
+    """
     if form is None:
         return None
     before = findings.count()
@@ -27,12 +35,14 @@ def protocol_of(
     states.open = form.list_damaged("states")
     for index, name in enumerate(form.states):
         states.declare(name, form.item_at("states", index), name, findings)
-    commands: NameScope[Command] = NameScope(f"command of {owner}")
+    commands: NameScope[Command] = NameScope(f"command of {owner}", open=damaged)
     for command in provided:
         commands.declare(command.name, command.origin, command)
     initial = states.look_up(form.initial, form.at("initial"), findings)
     steps: dict[tuple[str, str], ProtocolStep] = {}
+    names: NameScope[str] = NameScope(f"transition of the protocol of {owner}")
     for name, at in form.transitions.items():
+        names.declare(name, at.origin, name, findings)
         source = states.look_up(at.from_, at.at("from"), findings)
         target = source if at.to is None else states.look_up(at.to, at.at("to"), findings)
         called = commands.look_up(at.on, at.at("on"), findings)

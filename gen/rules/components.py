@@ -118,7 +118,7 @@ def events_are_raised_and_used(component: Component, resolved: Resolved) -> Iter
 
 def parameters_and_data_are_used(component: Component, resolved: Resolved) -> Iterator[Diagnostic]:
     """A warning for each parameter that nothing reads, and data that nothing reads or writes."""
-    if any(one.partition(".")[0] == component.name for one in resolved.damaged):
+    if component.name in resolved.damaged:
         return
     conditions = Use()
     for invariant in component.invariants:

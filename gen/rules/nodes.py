@@ -54,9 +54,7 @@ def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
             told.add((code, origin))
             yield error(code, origin, text, hint=hint)
     for device in system.devices:
-        homes = {
-            system.instance(row.rpartition(".")[0]).node: row for row in callers(system, device)
-        }
+        homes = {system.instance(row.instance).node: row for row in callers(system, device)}
         if len(homes) > 1:
             ends = " and ".join(f"{row} on {node}" for node, row in homes.items())
             text = f"the device {device.name} is called by {ends}"
@@ -162,7 +160,7 @@ def devices_start_in_time(resolved: Resolved) -> Iterator[Diagnostic]:
 def _home(system: System, device: Device) -> str | None:
     """The node whose rows call a device; None where none is known to."""
     rows = callers(system, device)
-    return system.instance(rows[0].rpartition(".")[0]).node if rows else None
+    return system.instance(rows[0].instance).node if rows else None
 
 
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:

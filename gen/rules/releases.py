@@ -80,12 +80,12 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def _is_queued(instance: Instance, end: End) -> bool:
-    return instance.component.port(end.port).kind is PortKind.QUEUED
+    return instance.component.port(end.name).kind is PortKind.QUEUED
 
 
 def _of_port(instance: Instance, end: End) -> Iterator[Problem]:
     """The errors of the port itself."""
-    port = instance.component.port(end.port)
+    port = instance.component.port(end.name)
     declared = port.origin, f"`{port.name}` is declared here"
     if not _is_queued(instance, end):
         message = f"{end} is sampled: only the values of a queued port release a processor"
@@ -113,7 +113,7 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
             "remove it: `check` proves it for periodic rows only",
         )
     for port in component.inputs():
-        if port.name != end.port:
+        if port.name != end.name:
             message = f"{cannot}: {component.name} has another input port, `{port.name}`"
             yield message, port.origin, f"`{port.name}` is declared here", apart
     for provided in component.provides:
@@ -145,7 +145,7 @@ def _of_senders(system: System, end: End) -> Iterator[Problem]:
             text = f"{cannot}: its values are those of the message {message.name}"
             yield text, message.origin, f"{message.name} is declared here", periodic
     for poll in system.polls:
-        if (poll.instance, poll.port) == (end.instance, end.port):
+        if (poll.instance, poll.port) == (end.instance, end.name):
             text = f"{cannot}: its values are those of the device {poll.device.name}"
             yield text, poll.origin, "that is bound here", periodic
     for connection in system.connections:
@@ -157,7 +157,7 @@ def _of_connection(
     system: System, connection: Connection, cannot: str, periodic: str
 ) -> Iterator[Problem]:
     source = system.instance(connection.source.instance)
-    senders = source.component.senders(connection.source.port)
+    senders = source.component.senders(connection.source.name)
     if len(senders) > 1:
         names = " and ".join(f"{source.name}.{one.name}" for one in senders)
         yield (

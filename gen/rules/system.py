@@ -102,17 +102,17 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
     for connection in system.connections:
         source = system.instance(connection.source.instance)
         target = system.instance(connection.target.instance)
-        sent = source.component.port(connection.source.port).type
-        taken = target.component.port(connection.target.port).type
+        sent = source.component.port(connection.source.name).type
+        taken = target.component.port(connection.target.name).type
         if sent != taken:
             message = (
                 f"{connection.source} sends {sent.name}, but {connection.target} takes {taken.name}"
             )
             yield error("RV-0605", connection.origin, message)
         if source.node != target.node and "buses" in resolved.sound_sections:
-            sender, _ = source.outside(connection.source.port)
+            sender, _ = source.outside(connection.source.name)
             message = (
-                f"{sender} is on {source.node}, but {target.outside(connection.target.port)[0]} "
+                f"{sender} is on {source.node}, but {target.outside(connection.target.name)[0]} "
                 f"is on {target.node}"
             )
             if system.buses:
@@ -130,7 +130,7 @@ def messages_agree(resolved: Resolved) -> Iterator[Diagnostic]:
         of_ports = item.call is None and not item.every and not item.controls
         for target in item.targets if of_ports else ():
             instance = system.instance(target.instance)
-            taken = instance.component.port(target.port).type
+            taken = instance.component.port(target.name).type
             if taken != item.type:
                 message = f"{item.name} carries {item.type.name}, but {target} takes {taken.name}"
                 yield error("RV-0605", item.origin, message)
@@ -145,10 +145,10 @@ def inputs_have_one_source(resolved: Resolved) -> Iterator[Diagnostic]:
     """Every input port is the target of one connection or message."""
     sources: defaultdict[tuple[str, str], list[Origin]] = defaultdict(list)
     for connection in resolved.system.connections:
-        sources[connection.target.instance, connection.target.port].append(connection.origin)
+        sources[connection.target.instance, connection.target.name].append(connection.origin)
     for item in resolved.system.messages:
         for target in item.targets:
-            sources[target.instance, target.port].append(item.origin)
+            sources[target.instance, target.name].append(item.origin)
     for poll in resolved.system.polls:
         sources[poll.instance, poll.port].append(poll.origin)
     complete = {"connections", "messages", "instances"} <= resolved.sound_sections
@@ -177,10 +177,10 @@ def outputs_lead_somewhere(resolved: Resolved) -> Iterator[Diagnostic]:
     """A warning for each output port that nothing is connected to."""
     if not {"connections", "messages", "instances"} <= resolved.sound_sections:
         return
-    used = {(one.source.instance, one.source.port) for one in resolved.system.connections}
+    used = {(one.source.instance, one.source.name) for one in resolved.system.connections}
     for item in resolved.system.messages:
         if item.source is not None:
-            used.add((item.source.instance, item.source.port))
+            used.add((item.source.instance, item.source.name))
     for instance in resolved.system.instances:
         for port in instance.component.outputs():
             if (instance.name, port.name) not in used and not port.is_command:
@@ -233,7 +233,7 @@ def one_step_regions_send_messages(resolved: Resolved) -> Iterator[Diagnostic]:
             continue  # of those with a mode one frame goes at the end of an execution
         component = system.instance(item.source.instance).component
         for region in component.regions:
-            if item.source.port in region.sends and region.steps_per_execution > 1:
+            if item.source.name in region.sends and region.steps_per_execution > 1:
                 message = (
                     f"{region.name} makes up to {region.steps_per_execution} steps in one "
                     f"execution, so {item.name} may be sent more often than once in its period"
@@ -249,7 +249,7 @@ def messages_have_one_sender(resolved: Resolved) -> Iterator[Diagnostic]:
         if item.source is None:
             continue
         component = resolved.system.instance(item.source.instance).component
-        senders = [one for one in component.runnables() if item.source.port in one.sends]
+        senders = [one for one in component.runnables() if item.source.name in one.sends]
         for other in senders[1:]:
             message = (
                 f"{senders[0].name} and {other.name} both send {item.name}, so it may be sent more "

@@ -3,8 +3,8 @@
 
 """One simulated drive: a motor that moves an axis between two hard stops.
 
-Deterministic: the same commands at the same steps give the same motion. The
-state is in SI units; what crosses the bus is in um and um/s.
+The model is deterministic: the same commands at the same steps give the same motion. The
+state is in SI units; values on the bus are in um and um/s.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ UM = 1e6
 
 
 class DriveMode(Enum):
-    """What the drive is told to do: let go and brake, or follow the speed set point."""
+    """The command to the drive: let go and brake, or follow the speed set point."""
 
     DISABLED = "Disabled"
     ENABLED = "Enabled"
 
 
 class Limit(Enum):
-    """What the limit switches say; the low one is heard first."""
+    """The state of the limit switches; the low one takes precedence."""
 
     CLEAR = "Clear"
     LOW_END = "Low_End"
@@ -36,14 +36,14 @@ class Limit(Enum):
 
 
 class Condition(Enum):
-    """Whether the drive can follow."""
+    """Whether the drive can follow a set point."""
 
     READY = "Ready"
     FAULTED = "Faulted"
 
 
 class Push(Enum):
-    """A switch that somebody presses by hand."""
+    """A switch that is pressed by hand."""
 
     NONE = "none"
     LOW = "low"
@@ -57,19 +57,19 @@ class Axis:
     stroke: float
     """Distance between the hard stops in m."""
     start: float
-    """Where the axis stands at power-on."""
+    """The position of the axis at power-on."""
     low_switch: float
     """The low switch is pressed below this position."""
     high_switch: float
     """The high switch is pressed above this position."""
     switch_travel: float = 0.001
-    """A pressed switch lets go this far, in m, from where it was pressed."""
+    """A pressed switch is released this far, in m, from where it was pressed."""
     count_at_start: int = 0
-    """What the encoder reads at power-on, in um: it knows no origin."""
+    """The reading of the encoder at power-on, in um: it has no origin."""
     mass: float = 8.0
     """Moving mass in kg, the motor's inertia included."""
     force_limit: float = 24.0
-    """What the motor can give in N: 3 m/s2 for the mass above."""
+    """The largest force of the motor in N: 3 m/s2 for the mass above."""
     coulomb: float = 2.0
     """Dry friction in N."""
     viscous: float = 6.0
@@ -84,7 +84,7 @@ class Axis:
     """Without a set point for this long, in s, an enabled drive stops and faults."""
 
     def __post_init__(self) -> None:
-        """Refuse what is no axis."""
+        """Refuse lengths that do not make an axis."""
         if not 0 <= self.low_switch < self.high_switch <= self.stroke:
             raise ValueError("0 <= low_switch < high_switch <= stroke must hold")
         if not 0 <= self.start <= self.stroke:
@@ -92,7 +92,7 @@ class Axis:
 
 
 class Drive:
-    """A drive in motion. `command` sets what it follows, `step` moves it on by STEP."""
+    """A drive in motion. `command` sets its mode and speed, `step` moves it on by STEP."""
 
     def __init__(self, axis: Axis) -> None:
         """At power-on: at rest, disabled, no set point received."""
@@ -127,7 +127,7 @@ class Drive:
 
     @property
     def limit(self) -> Limit:
-        """What the switches say, pressed by the axis or by hand."""
+        """The state of the switches, pressed by the axis or by hand."""
         if self.push is Push.LOW or self._low:
             return Limit.LOW_END
         if self.push is Push.HIGH or self._high:
@@ -161,7 +161,7 @@ class Drive:
         return 0.5 * self.axis.mass * self.speed**2
 
     def _watch(self) -> None:
-        """Fault when an enabled drive hears no set points any more."""
+        """Fault when an enabled drive receives no more set points."""
         self._silence += STEP
         if self._heard and self.mode is DriveMode.ENABLED and self._silence > self.axis.watchdog:
             self.condition = Condition.FAULTED

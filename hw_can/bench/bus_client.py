@@ -60,7 +60,7 @@ MOST_OPEN = 1_000
 """Requests that may be open: the server has room for 1,024 of each node."""
 
 LINGER = 0.5
-"""Seconds for which the end of a bus waits for what is still to be transmitted."""
+"""Seconds for which the end of a bus waits for frames that are still to be transmitted."""
 
 _STATES = {
     MemberState.ERROR_ACTIVE: can.BusState.ACTIVE,
@@ -90,7 +90,7 @@ class RavenchartBus(can.BusABC):
         ``fd``: send and receive FD frames; the bus must carry them. ``bitrate`` and
         ``data_bitrate`` in bit/s, 0 for those of the bus. ``restart_ms``: milliseconds from
         bus-off to the request for recovery, 0 .. 600,000; 0 for that of the bus, which
-        requests none unless it was told. ``name`` is shown by the server.
+        requests none by default. ``name`` is shown by the server.
         Raises ValueError for an argument of another form or range, CanInitializationError
         when there is no such server or it refuses.
         """
@@ -147,7 +147,7 @@ class RavenchartBus(can.BusABC):
         super().__init__(channel, can_filters, **kwargs)
 
     def fileno(self) -> int:
-        """Readable while a frame waits for `recv`, or something has come that nobody has read."""
+        """Readable while a frame waits for `recv`, or while received bytes are unread."""
         with self._signalling:
             if self._ready is None:
                 self._signal = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
@@ -159,20 +159,20 @@ class RavenchartBus(can.BusABC):
 
     @property
     def state(self) -> can.BusState:
-        """ACTIVE, PASSIVE or ERROR (bus-off), as the server said last."""
+        """ACTIVE, PASSIVE or ERROR (bus-off), as the server reported last."""
         self._take_all()
         return self._state
 
     @state.setter
     def state(self, new_state: can.BusState) -> None:
-        """ACTIVE asks for recovery from bus-off; nothing else can be asked for."""
+        """ACTIVE requests recovery from bus-off; no other state can be requested."""
         if new_state is not can.BusState.ACTIVE:
             raise NotImplementedError("a node of this bus only becomes active by request")
         self._write(encode(BusRecord(RecordKind.RECOVERY)))
 
     @property
     def error_counters(self) -> tuple[int, int]:
-        """Transmit and receive error counter, each 0 .. 256, as the server said last."""
+        """Transmit and receive error counter, each 0 .. 256, as the server reported last."""
         self._take_all()
         return self._errors
 
@@ -218,7 +218,7 @@ class RavenchartBus(can.BusABC):
             self._release()
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
-        """The next frame, and whether no filter is for it: those of errors are."""
+        """The next frame, and whether filters do not apply to it: to error frames they do not."""
         end = None if timeout is None else time.monotonic() + timeout
         while True:
             if self._arrived:
@@ -230,7 +230,7 @@ class RavenchartBus(can.BusABC):
                 return None, False
 
     def _await_room(self, end: float) -> None:
-        """Until fewer requests are open, or ``end``; CanOperationError then."""
+        """Wait until fewer requests are open; CanOperationError at ``end``."""
         while len(self._open) >= MOST_OPEN:
             rest = end - time.monotonic()
             if rest <= 0:
@@ -240,7 +240,7 @@ class RavenchartBus(can.BusABC):
             self._take(min(rest, SLICE))
 
     def _await(self, number: int, timeout: float) -> None:
-        """Until request ``number`` is settled; other threads may read meanwhile."""
+        """Wait until request ``number`` is settled; other threads may read meanwhile."""
         end = time.monotonic() + timeout
         try:
             while (outcome := self._awaited[number]) is None:
@@ -264,9 +264,9 @@ class RavenchartBus(can.BusABC):
             pass
 
     def _take(self, timeout: float | None, *, receiving: bool = False) -> bool:
-        """Read what comes within ``timeout`` s and act on it; whether bytes came.
+        """Read bytes that come within ``timeout`` s and act on them; whether bytes came.
 
-        One who is ``receiving`` reads nothing when a frame has arrived already.
+        With ``receiving`` nothing is read when a frame has arrived already.
         """
         if not self._reading.acquire(timeout=-1 if timeout is None else timeout):
             return False
@@ -330,7 +330,7 @@ class RavenchartBus(can.BusABC):
         return octets
 
     def _act_on(self, record: BusRecord) -> None:
-        """What a record from the server means."""
+        """Act on a record from the server."""
         match record.kind:
             case RecordKind.FRAME | RecordKind.ERROR_FRAME:
                 arrived = can_message(record, self._start)
@@ -407,7 +407,7 @@ class RavenchartBus(can.BusABC):
             self._send(octets)
 
     def _send(self, octets: bytes) -> None:
-        """All of ``octets``, or CanOperationError, then and ever after."""
+        """Send all of ``octets``, or raise CanOperationError, then and ever after."""
         self._check_usable()
         try:
             self._link.sendall(octets)
@@ -416,7 +416,7 @@ class RavenchartBus(can.BusABC):
             raise can.CanOperationError(self._broken) from None
 
     def _linger(self) -> None:
-        """Wait a moment for requests that are open: who leaves takes them along."""
+        """Wait a moment for open requests: a node that leaves cancels them."""
         end = time.monotonic() + LINGER
         with suppress(can.CanOperationError):
             while self._open and (rest := end - time.monotonic()) > 0:

@@ -3,8 +3,8 @@
 
 """Records of the bus protocol (docs/bus-protocol.md), to and from their 88 bytes.
 
-Reading is total: any bytes give a record that keeps every rule, which would be written
-with the same bytes again, or a `can.CanOperationError` that says which rule is broken.
+Reading is total: any bytes give a record that keeps every rule, or a
+`can.CanOperationError` that names the broken rule. Writing the record gives the same bytes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MARK = int.from_bytes(b"RAVN", "little")
 _LAYOUT = struct.Struct("<BBBBIQIHH64s")
 _GREETING = struct.Struct("<16sIIQ32x")
 _GREETING_BYTES = 32
-"""What of the data a greeting uses."""
+"""Bytes of the data that a greeting uses."""
 RECORD_BYTES = _LAYOUT.size
 DATA_BYTES = 64
 NAME_LENGTH = 16
@@ -41,7 +41,7 @@ BUS_OFF = 256
 
 
 class RecordKind(IntEnum):
-    """What a record is."""
+    """The kind of a record."""
 
     HELLO = 1
     WELCOME = 2
@@ -85,7 +85,7 @@ class Status(IntEnum):
 
     @property
     def words(self) -> str:
-        """As a message says it."""
+        """The words for a message."""
         return self.name.lower().replace("_", " ")
 
 
@@ -204,7 +204,7 @@ def greeting_data(greeting: Greeting) -> bytes:
 
 
 def greeting_of(record: BusRecord) -> Greeting:
-    """What a hello or welcome says of itself."""
+    """The greeting in a hello or welcome."""
     name, nominal, data, start = _GREETING.unpack(record.data)
     return Greeting(name[: record.length].decode("ascii"), nominal, data, start)
 
@@ -262,10 +262,10 @@ def can_message(record: BusRecord, start: int) -> can.Message:
 
 
 _Fields = tuple[int, int, int, int, int, int, int, int, int, bytes]
-"""The fields of a record as they are packed, before any rule was looked at."""
+"""The fields of a record as they are packed, before any rule was checked."""
 
 _ZEROS = tuple(bytes(DATA_BYTES - length) for length in range(DATA_BYTES + 1))
-"""What stands behind so many bytes of data."""
+"""The zeros after each number of bytes of data."""
 
 _CLASSIC_LENGTHS = frozenset(range(9))
 _FORMATS = {
@@ -300,7 +300,7 @@ def record_in(fields: _Fields) -> BusRecord:
 def frame_in(fields: _Fields, start: int, channel: str) -> can.Message | None:
     """The frame with these fields, the common kind of record, without a `BusRecord` in between.
 
-    None for another kind, and for a frame that breaks a rule: `record_in` tells them apart.
+    None for another kind, and for a frame that breaks a rule: `record_in` distinguishes them.
     """
     kind, flags, length, code, identifier, when, _, transmit, receive, data = fields
     if kind != _FRAME or flags not in _FORMATS or code or transmit or receive:

@@ -3,8 +3,8 @@
 
 """The drives on the bench: one loop that receives, moves the axes and reports.
 
-The loop runs on an absolute grid of PERIOD: it does not drift, and when the host
-held it up it skips the ticks it missed instead of sending them all at once.
+The loop runs on an absolute grid of PERIOD, so it does not drift. When the host
+delayed the loop, it skips the missed ticks instead of sending them all at once.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SET_POINT_FIELDS = ("mode", "speed")
 
 @dataclass(slots=True)
 class AxisTrack:
-    """What one axis did, one entry a tick: um, um/s, times in s from the bench's start."""
+    """The motion of one axis, one entry a tick: um, um/s, times in s from the bench's start."""
 
     time: list[float] = field(default_factory=list)
     position: list[float] = field(default_factory=list)
@@ -41,7 +41,7 @@ class AxisTrack:
 
 @dataclass(slots=True)
 class Station:
-    """One drive with its messages and what is known about it."""
+    """One drive with its messages, its track and its orders."""
 
     form: DriveForm
     drive: Drive
@@ -68,7 +68,7 @@ class Bench:
     ) -> None:
         """Power on: every axis at its start. BenchError when a message does not fit.
 
-        ``plants`` are at time 0, and closed by whoever made them.
+        ``plants`` are at time 0; the caller closes them.
 
         Without ``tracks`` no motion is kept, so the bench may go on for days.
         """
@@ -83,7 +83,7 @@ class Bench:
         self.latest: dict[str, FrameValues] = {}
         """The last values of each message received."""
         self.skipped = 0
-        """Ticks that were missed because the host held the bench up."""
+        """Ticks that were missed because the host delayed the bench."""
         self.on_message: Callable[[str, FrameValues], None] = lambda name, values: None
         """Called for each message received."""
         self.start = clock()
@@ -127,7 +127,7 @@ class Bench:
             plant.record(due * PERIOD)
 
     def silence(self, name: str) -> None:
-        """A drive or plant, or every one (``all``), sends no more."""
+        """Let a drive or plant, or every one (``all``), send no more."""
         for drive, station in self.stations.items():
             station.silent |= name in ("all", drive)
         for plant in self.plants.values():
@@ -144,7 +144,7 @@ class Bench:
                 station.ordered = position / UM
 
     def _take(self, name: str, values: FrameValues) -> None:
-        """A message arrived: the axes move up to now, then the set point counts."""
+        """Take a message: the axes move up to now, then the set point counts."""
         self._advance(self.now)
         self.latest[name] = values
         for station in self.stations.values():
@@ -175,7 +175,7 @@ def press(station: Station, switch: str) -> None:
 
 
 def _set_point(name: str, values: FrameValues) -> tuple[DriveMode, float]:
-    """Mode and speed in m/s; BenchError when the mode is none that a drive knows."""
+    """Mode and speed in m/s; BenchError when a drive does not know the mode."""
     try:
         return DriveMode(values["mode"]), int(values["speed"]) / UM
     except ValueError as fault:
@@ -183,7 +183,7 @@ def _set_point(name: str, values: FrameValues) -> tuple[DriveMode, float]:
 
 
 def _feedback(drive: Drive) -> FrameValues:
-    """What a drive reports."""
+    """The feedback of a drive."""
     return {
         "count": drive.count,
         "speed": round(drive.speed_um),
@@ -193,7 +193,7 @@ def _feedback(drive: Drive) -> FrameValues:
 
 
 def _record(station: Station, now: float) -> None:
-    """One more entry of the track."""
+    """Add an entry to the track."""
     drive, track = station.drive, station.track
     track.time.append(now)
     track.position.append(drive.position_um)
@@ -205,7 +205,7 @@ def _record(station: Station, now: float) -> None:
 
 
 def _check_fields(peer: Peer, message: str, wanted: tuple[str, ...]) -> None:
-    """BenchError unless the message has exactly the fields that a drive speaks."""
+    """BenchError unless the message has exactly the fields of a drive."""
     found = peer.codec.fields(message)
     if set(found) != set(wanted):
         raise BenchError(f"{message} has the fields {', '.join(found)}, not {', '.join(wanted)}")

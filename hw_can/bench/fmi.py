@@ -20,7 +20,7 @@ from .plants import Plant, PlantError, faults_of
 WHOLE = ("Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Integer")
 REALS = ("Float32", "Float64", "Real")
 LATE = 1e-9
-"""s by which a step may end after the time that is asked for: rounding."""
+"""s by which a step may end after the requested time: rounding."""
 
 
 def loaded(path: Path, parameters: Mapping[str, Value], step: float) -> Plant:
@@ -109,19 +109,21 @@ class _Unit(Plant):
 
 
 def _may_be_set(variable: Any) -> bool:
-    """During the simulation: an input, or a tunable parameter (FMI 3.0, 2.4.7.4)."""
+    """Whether a variable may be set during the simulation: an input, or a tunable parameter.
+
+    FMI 3.0, 2.4.7.4."""
     tunable = variable.causality == "parameter" and variable.variability == "tunable"
     return bool(variable.causality == "input" or tunable)
 
 
 def _literal(variable: Any, number: int) -> Value:
-    """The name of a literal; its number where the unit gives none."""
+    """The name of a literal; its number where the unit has no name for it."""
     items = variable.declaredType.items if variable.declaredType is not None else ()
     return next((str(item.name) for item in items if int(item.value) == number), number)
 
 
 def _converted(variable: Any, value: Value) -> object:
-    """A value as the unit's variable has it; PlantError for one that it cannot have."""
+    """A value in the type of the unit's variable; PlantError for one that it cannot have."""
     try:
         if variable.type == "Enumeration" and isinstance(value, str):
             return next(int(i.value) for i in variable.declaredType.items if i.name == value)

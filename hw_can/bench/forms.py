@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The forms of a scenario's parts but its steps: drives, events of the bus, what is checked.
+"""The forms of a scenario's parts but its steps: drives, events of the bus, checks.
 
 Quantities carry their unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
 """
@@ -77,7 +77,7 @@ class PlantForm(ScenarioForm):
     fmu: Annotated[str, Field(pattern=r".+\.fmu$")] | None = None
     """File of a Functional Mock-up Unit for co-simulation, from the folder of the scenario."""
     parameters: dict[str, Scalar] = {}
-    """What the plant is made with."""
+    """The parameters with which the plant is made."""
     inputs: dict[str, Signal] = {}
     """For inputs of the plant the fields of messages that the controller sends."""
     outputs: dict[Signal, str] = {}
@@ -124,7 +124,7 @@ BUS_EVENTS: Mapping[str, type[BusEvent]] = {
     "hold": Hold,
     "let_go": LetGo,
 }
-"""Each event of the bus by the key that tells it from the others."""
+"""Each event of the bus by its distinctive key."""
 
 
 class TraceCheck(ScenarioForm):
@@ -168,17 +168,17 @@ class _Counted(ScenarioForm):
 
     @property
     def name(self) -> str:
-        """What is counted."""
+        """The name of the counted item."""
         key = next(key for key, kind in EXPECTED.items() if isinstance(self, kind))
         return str(getattr(self, key))
 
     def allows(self, count: int) -> bool:
-        """Whether it may be counted so often."""
+        """Whether this count is allowed."""
         return count == self.times if self.times is not None else count <= (self.at_most or 0)
 
     @property
     def limit(self) -> str:
-        """How often it may be counted, in words."""
+        """The allowed count, in words."""
         return f"{self.times}" if self.times is not None else f"at most {self.at_most}"
 
 
@@ -222,7 +222,7 @@ EXPECTED: Mapping[str, type[Expected]] = {
     "missed": Missed,
     "overran": Overran,
 }
-"""Each expected fault by the key that tells it from the others."""
+"""Each expected fault by its distinctive key."""
 
 
 class WholeForm(ScenarioForm):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Any interface of python-can, opened: the one place where drivers of others are called to life."""
+"""Any interface of python-can, opened: the one module that loads drivers of others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from can.interfaces import BACKENDS
 from .peer import BenchError, Codec, OnFrame, Peer, link_of, unrecorded
 
 BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
-"""So that it is there in a checkout that is on the path and not installed, too."""
+"""So that the interface also exists in a checkout that is on the path and not installed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +28,13 @@ class BusEnd:
     data_bitrate: int | None = None
     """The same for the data of CAN FD frames."""
     fd: bool = False
-    """CAN FD frames go over it too."""
+    """Whether it also carries CAN FD frames."""
 
     def __str__(self) -> str:
         return f"{self.name} {self.channel!r}"
 
     def options(self) -> dict[str, Any]:
-        """What `can.Bus` is told beside interface and channel."""
+        """The options of `can.Bus` besides interface and channel."""
         told: dict[str, Any] = {"bitrate": self.bitrate, "data_bitrate": self.data_bitrate}
         told = {name: rate for name, rate in told.items() if rate is not None}
         if self.fd:
@@ -54,7 +54,7 @@ def check_name(interface: str) -> None:
 def opened_bus(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
     """One bus object, which receives its own frames with ``echo``; BenchError when there is none.
 
-    Drivers raise what they like.
+    Drivers may raise any exception.
     """
     check_name(interface.name)
     options = interface.options() | ({"receive_own_messages": True} if echo else {})
@@ -67,7 +67,7 @@ def opened_bus(interface: BusEnd, *, echo: bool = False) -> can.BusABC:
 
 
 def fault_text(fault: BaseException) -> str:
-    """What a driver's exception says, on one printable line."""
+    """The text of a driver's exception, on one printable line."""
     said = " ".join(str(fault).split()) or type(fault).__name__
     if not isinstance(fault, can.CanError | OSError | BenchError):
         said = f"{type(fault).__name__}: {said}"

@@ -4,7 +4,7 @@
 """The names of the model in a DBC whose messages, signals and values have others.
 
 Scenarios and reports have the names of the model. The generated DBC has those of the database that
-a message was imported from, and attributes that say what the model calls it.
+a message was imported from, and attributes with the names of the model.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MESSAGE, SIGNAL, VALUES = "ModelMessage", "ModelSignal", "ModelValues"
 
 
 def as_in_model(database: Database) -> Database:
-    """The same database, its messages and signals renamed to what the model calls them."""
+    """The same database, its messages and signals renamed to the names of the model."""
     for message in database.messages:
         message.name = _own(message.dbc, MESSAGE, message.name)
         names = {one.name: _own(one.dbc, SIGNAL, one.name) for one in message.signals}
@@ -37,7 +37,7 @@ def as_in_model(database: Database) -> Database:
 
 
 def _name_values(signal: Signal) -> None:
-    """The values of a signal by what the model calls them."""
+    """Give the values of a signal the names of the model."""
     told = _own(signal.dbc, VALUES, "")
     if told:
         pairs = (one.partition("=") for one in told.split())

@@ -3,8 +3,8 @@
 
 """The bench on the bus: a python-can peer that speaks the generated DBC.
 
-All values are raw integers of the model, or names of enumeration values; what the
-DBC's offsets do to the bits is the codec's business.
+All values are raw integers of the model, or names of enumeration values. The codec
+applies the offsets of the DBC.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from .naming import as_in_model
 from .protection import HEADER, Sender, Wrong, protected_sender
 
 OUTSIDE = "Outside"
-"""In a database, the sender of what no node of the model sends."""
+"""In a database, the sender of messages that no node of the model sends."""
 
 TRAILER = "SecOC_"
-"""How the signals of an authenticated message begin that stand behind its data."""
+"""The prefix of the signals behind the data of an authenticated message."""
 
 Value = int | float | str
 FrameValues = dict[str, Value]
@@ -42,7 +42,7 @@ OnFrame = Callable[[can.Message], None]
 
 
 def unrecorded(_frame: can.Message) -> None:
-    """Nothing is recorded."""
+    """Record nothing."""
 
 
 class BenchError(Exception):
@@ -79,7 +79,7 @@ class Codec:
 
     @property
     def has_fd(self) -> bool:
-        """There are CAN FD frames among the messages."""
+        """Whether there are CAN FD frames among the messages."""
         return any(m.is_fd for m in self._database.messages)
 
     def fields(self, name: str) -> tuple[str, ...]:
@@ -112,13 +112,13 @@ class Codec:
         )
 
     def check(self, name: str, values: Mapping[str, Value], wrong: Wrong | None) -> None:
-        """BenchError where `faulty` raises it; nothing is sent, and no counter goes on."""
+        """BenchError where `faulty` raises it; nothing is sent, and counters stay unchanged."""
         self._encoded(name, values, wrong)
 
     def _encoded(
         self, name: str, values: Mapping[str, Value], wrong: Wrong | None
     ) -> tuple[cantools.database.Message, bytes, Sender | None]:
-        """The message, its data, and who writes its header."""
+        """The message, its data, and the sender that writes its header."""
         message = self._message(name)
         unknown = sorted(set(values) - {s.name for s in message.signals})
         if unknown:
@@ -174,7 +174,7 @@ class Codec:
 
 
 class Peer:
-    """One end of the bus, with counts of what went over it by message."""
+    """One end of the bus, with counts of sent and received frames by message."""
 
     def __init__(
         self,
@@ -186,7 +186,7 @@ class Peer:
     ) -> None:
         """Speak on ``bus``, which is closed together with the peer; ``link`` is its socket.
 
-        ``gone`` says who failed where the bus does.
+        ``gone`` is the error text for a failure of the bus.
         """
         self.codec = codec
         self.sent: Counter[str] = Counter()
@@ -225,12 +225,12 @@ class Peer:
         return time.monotonic()
 
     def sleep(self, seconds: float) -> None:
-        """Let so much time of the bus go by."""
+        """Let so much time of the bus pass."""
         time.sleep(seconds)
 
     @property
     def is_open(self) -> bool:
-        """Neither dropped nor closed."""
+        """Whether the peer is neither dropped nor closed."""
         return self._open
 
     def send(self, name: str, values: Mapping[str, Value], wrong: Wrong | None = None) -> None:
@@ -256,7 +256,7 @@ class Peer:
         self._record(copied)
 
     def receive_until(self, deadline: float, take: Callable[[str, FrameValues], None]) -> None:
-        """Hand over what arrives until ``deadline``, a time of `clock`."""
+        """Hand over the messages that arrive until ``deadline``, a time of `clock`."""
         while self._open:
             frame = self._next(deadline)
             if frame is None:
@@ -269,7 +269,7 @@ class Peer:
                 take(*decoded)
 
     def drop(self) -> None:
-        """Cut the connection without a word, as when a cable breaks."""
+        """Cut the connection without notice, as when a cable breaks."""
         self._open = False
         if self._link is not None:
             with suppress(OSError):
@@ -304,7 +304,7 @@ class Peer:
             raise BenchError(f"the controller sent a malformed slcan line: {fault}") from None
 
     def _received(self, rest: float) -> can.Message | None:
-        """What comes within ``rest`` s, or earlier nothing; not every driver has a descriptor."""
+        """A frame within ``rest`` s; None may come earlier. Some drivers have no descriptor."""
         try:
             readable = select.select([self._bus.fileno()], [], [], rest)[0]
         except NotImplementedError:
@@ -320,7 +320,7 @@ def link_of(bus: can.BusABC) -> socket.socket:
 
 
 def _switches(database: Database) -> bool:
-    """Does the database say that CAN FD frames switch the bit rate (BRS)?"""
+    """Whether the CAN FD frames of the database switch the bit rate (BRS)."""
     specifics = database.dbc
     kind = specifics.attribute_definitions.get("CANFD_BRS") if specifics is not None else None
     return kind is not None and kind.default_value == "1"

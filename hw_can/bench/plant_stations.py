@@ -25,7 +25,7 @@ def plant_of(form: PlantForm, folder: Path) -> Plant:
 
 @dataclass(slots=True)
 class PlantTrack:
-    """What a plant did: times in s from the bench's start, numbers by output, one for each time."""
+    """The outputs of a plant: times in s from the bench's start, a number for each time."""
 
     time: list[float] = field(default_factory=list)
     values: dict[str, list[float]] = field(default_factory=dict)
@@ -42,14 +42,14 @@ class PlantStation:
     silent: bool = False
 
     def take(self, message: str, values: FrameValues) -> None:
-        """A message of the controller arrived."""
+        """Take a message of the controller."""
         for name, signal in self.form.inputs.items():
             owner, _, wanted = signal.partition(".")
             if owner == message and wanted in values:
                 self.set(name, values[wanted])
 
     def set(self, name: str, value: Value) -> None:
-        """An input has this value."""
+        """Give this value to an input."""
         with faults_of(self.file, PlantFaultError):
             self.plant.take(name, value)
 
@@ -71,7 +71,7 @@ class PlantStation:
             peer.send(message, {name: _whole(self.value(out)) for name, out in fields.items()})
 
     def record(self, now: float) -> None:
-        """One more entry of the track."""
+        """Add an entry to the track."""
         self.track.time.append(now)
         for name in dict.fromkeys(self.form.outputs.values()):
             value = self.value(name)
@@ -99,5 +99,5 @@ def outgoing(form: PlantForm) -> Mapping[str, Mapping[str, str]]:
 
 
 def _whole(value: Value) -> Value:
-    """A number without a fraction as a whole one: a field with names knows its numbers so."""
+    """A number without a fraction as a whole number, which fields with named values need."""
     return int(value) if isinstance(value, float) and value.is_integer() else value

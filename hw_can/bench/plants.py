@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Plants of the bench that users bring: the class to derive from, and where they are loaded from.
+"""Plants of the bench that users bring: the class to derive from, and its loading from a file.
 
-A plant is what the controller acts on: it takes values of messages that the controller sends, and
-gives the values of messages that the controller receives. A file beside the scenario has it:
+A plant is the process that the controller acts on. It takes values of messages that the controller
+sends, and gives the values of messages that it receives. A file beside the scenario has the class:
 
     from ravenchart.hw_can.bench.plants import Plant
 
@@ -44,27 +44,27 @@ Outcome = TypeVar("Outcome")
 
 
 class Plant(ABC):
-    """What a controller acts on. One thread calls it, and times only grow.
+    """The process that a controller acts on. One thread calls it, and times only grow.
 
     Values are those of the CAN database: whole numbers in the units of the model, numbers with
     a fraction where the database scales, names of literals.
     """
 
     inputs: Sequence[str] = ()
-    """Names that `take` knows: what messages or the step `set` may give."""
+    """Names that `take` knows: messages or the step `set` may give their values."""
     outputs: Sequence[str] = ()
-    """Names that `value` knows: what messages or the step `expect_output` may ask for."""
+    """Names that `value` knows: messages or the step `expect_output` may ask for their values."""
 
     @abstractmethod
     def __init__(self, parameters: Mapping[str, Value]) -> None:
         """Power on at time 0, with the ``parameters`` of the scenario; ValueError for wrong ones.
 
-        It may be made, and closed, several times before the run: to check the scenario.
+        The bench may make and close it several times before the run, to check the scenario.
         """
 
     @abstractmethod
     def take(self, name: str, value: Value) -> None:
-        """An input has this value from now on; ``advance`` came up to now before."""
+        """Give this value to an input from now on; ``advance`` was called up to now before."""
 
     @abstractmethod
     def advance(self, until: float) -> None:
@@ -79,7 +79,7 @@ class Plant(ABC):
 
 
 class PlantError(ValueError):
-    """A plant that cannot be loaded; the text says why."""
+    """A plant that cannot be loaded; the text has the reason."""
 
 
 class PlantFaultError(BenchError):
@@ -123,7 +123,7 @@ def _class(path: Path, name: str) -> Callable[[Mapping[str, Value]], object]:
 
 @contextmanager
 def faults_of(name: str, kind: type[Exception] = PlantError) -> Iterator[None]:
-    """What the code of a plant raises becomes a ``kind`` with its line: a user wrote the code."""
+    """Turn an exception of a plant's code into a ``kind`` with its line: a user wrote the code."""
     try:
         yield
     except (PlantError, BenchError):

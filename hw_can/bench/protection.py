@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the bench writes into the header of a message that is protected from end to end.
+"""The header that the bench writes into a message that is protected from end to end.
 
-It reads the profile from the attributes of the DBC and knows nothing of the controller's code.
+The bench reads the profile from the attributes of the DBC. It does not use the controller's code.
 AUTOSAR FO PRS_E2EProtocol: profiles 1, 2, 5 and 11, the header at byte 0.
 """
 
@@ -45,7 +45,7 @@ class Sender:
     def protect(self, data: bytes, wrong: Wrong | None = None) -> bytes | None:
         """The data with their header, or with that fault; None: the frame is lost.
 
-        The next frame has the next counter. What comes from elsewhere, or comes again, takes
+        The next frame has the next counter. A frame from elsewhere, or a repeated frame, takes
         no counter from the sender: its next frame is in sequence.
         """
         taken = self.counter

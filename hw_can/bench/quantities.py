@@ -3,7 +3,7 @@
 
 """Quantities of a scenario, with their units (``430 mm``, ``1 mm/s``, ``8 s``), in m, m/s and s.
 
-Values of fields have no unit: they are what the CAN database counts.
+Values of fields have no unit: they count in the unit of the CAN database.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _TIMES = {"us": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 def time_of(text: str) -> float:
-    """A time in s; ValueError says what it must be."""
+    """A time in s; ValueError has the required form."""
     found = _quantity(text, _TIMES)
     if found < 0:
         raise ValueError("at least 0 s")
@@ -41,7 +41,7 @@ def _quantity(value: object, units: Mapping[str, float]) -> float:
 
 
 def _written(units: Mapping[str, float]) -> WithJsonSchema:
-    """How a quantity reads, for the JSON Schema."""
+    """The form of a quantity, for the JSON Schema."""
     return WithJsonSchema({"type": "string", "pattern": rf"^-?\d+(\.\d+)? ?({'|'.join(units)})$"})
 
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Forms read from a YAML tree: what does not fit becomes a located diagnostic."""
+"""Forms read from a YAML tree: each part that does not fit becomes a located diagnostic."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ SHAPES = {
     "bool_type": "`true` or `false`",
     "too_short": "at least one item",
 }
-"""What a value must be, by the kind of error that pydantic reports."""
+"""The required shape of a value, by the kind of error that pydantic reports."""
 
 Form = TypeVar("Form", bound=BaseModel)
 
 
 @dataclass(slots=True)
 class Source:
-    """A file as a tree, and what is wrong with it so far."""
+    """A file as a tree, and its errors so far."""
 
     file: str
     text: str
@@ -45,7 +45,7 @@ class Source:
     found: list[Diagnostic] = field(default_factory=list)
 
     def at(self, path: FormPath, *, key: bool = False) -> Origin:
-        """Where a value stands, or its ``key``; of what is not there, what is around it."""
+        """The location of a value, or its ``key``; for a missing value that of its container."""
         node: object = self.tree
         origin = self.tree.origin
         for number, part in enumerate(path):
@@ -83,7 +83,7 @@ class Source:
         context: object,
         item: object,
     ) -> None:
-        """One thing that does not fit, in words."""
+        """Report one part that does not fit, in words."""
         assert isinstance(context, dict) and isinstance(item, dict)
         names = [one.alias or name for name, one in form.model_fields.items() if name != "req"]
         inside = self._inside((*path, *place))
@@ -125,7 +125,7 @@ class Source:
         return path
 
     def told(self) -> str:
-        """Everything that is wrong, in the order of the file, as compilers print it."""
+        """All errors, in the order of the file, as compilers print them."""
         return rendered(self.found, self.file, self.text)
 
 

@@ -42,9 +42,9 @@ def fault_of_log(path: Path) -> str | None:
 
 
 def from_outside(log: list[Timed], codec: Codec, drives: frozenset[str]) -> list[Timed]:
-    """The frames of messages that the bench stands for: no node and none of ``drives`` sends them.
+    """The frames of messages that the bench sends: no node and none of ``drives`` sends them.
 
-    Frames that are not as their message is, such as remote frames, are left out.
+    Frames that do not fit their message, such as remote frames, are left out.
     """
     names = ((at, frame, codec.from_outside(frame)) for at, frame in log)
     return [(at, frame) for at, frame, name in names if name is not None and name not in drives]

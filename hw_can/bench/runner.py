@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Runs a scenario against a controller and says, step by step, how it went."""
+"""Runs a scenario against a controller, with a result for each step."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """How one step went; times in s from the bench's start."""
+    """The result of one step; times in s from the bench's start."""
 
     text: str
     line: int
@@ -57,7 +57,7 @@ class Sending:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioResult:
-    """What the bench saw, up to and with the first step that failed.
+    """The observations of the bench, up to and with the first step that failed.
 
     ``tracks`` by drive, ``plants`` by plant; ``zeros`` are the true positions in um where
     the axes left their low switches; ``started`` is a time of `time.monotonic`.
@@ -78,7 +78,7 @@ class ScenarioResult:
 
     @property
     def passed(self) -> bool:
-        """Every step was run and passed."""
+        """Whether every step was run and passed."""
         return self.not_run == 0 and all(step.passed for step in self.steps)
 
 
@@ -96,8 +96,8 @@ def run_scenario(
 ) -> ScenarioResult:
     """Run ``scenario`` over ``peer``, for at most ``limit`` seconds, and close the peer.
 
-    ``progress`` is told each step before it is run. After the last one the drives
-    go on until ``ended`` says so: it is asked after every tick, and may end the
+    ``progress`` gets each step before it is run. After the last step the drives
+    go on until ``ended`` returns true: it is called after every tick, and may end the
     controller. Raises BenchError only when a message does not fit the DBC.
     """
     stations: list[PlantStation] = []
@@ -170,7 +170,7 @@ class _Runner:
         self._scenario = scenario
 
     def do(self, step: ScenarioStep) -> tuple[bool, str]:
-        """Whether the step passed, and what came out."""
+        """Carry out a step: whether it passed, and its outcome."""
         match step:
             case SendStep():
                 return self._send(step)
@@ -214,7 +214,7 @@ class _Runner:
         return True, "lost" if step.wrong == "loss" else "sent"
 
     def _replay(self, step: Replay) -> tuple[bool, str]:
-        """All frames of the log that come from outside, each at its time."""
+        """Send all frames of the log that come from outside, each at its time."""
         bench = self._bench
         log = read_log(self._scenario.file_of(step))
         simulated = self._scenario.simulated()
@@ -227,7 +227,7 @@ class _Runner:
         return True, f"{len(frames)} of {len(log)} frames sent"
 
     def _wait_for(self, step: WaitFor) -> tuple[bool, str]:
-        """Only messages that arrive from now on count."""
+        """Wait for a value; only messages that arrive from now on count."""
         message, field = step.wait_for.split(".")
         found: list[Value] = []
 
@@ -264,7 +264,7 @@ class _Runner:
         return step.accepts(value), f"{step.expect_output} is {shown}"
 
     def _stop(self, step: ExpectStop) -> tuple[bool, str]:
-        """Passes when the axis was slow in the last look, and tells since when."""
+        """Pass when the axis was slow at the last tick; the outcome has the time since when."""
         drive = self._bench.stations[step.expect_stop].drive
         began, slow_since = self._bench.now, None
         while self._bench.now - began < step.within:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A scenario: the drives on the bench, and what the operator does, step by step.
+"""A scenario: the drives on the bench, and the steps of the operator.
 
-Read from YAML and checked as a whole before anything runs. Quantities carry their
-unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
+A scenario is read from YAML and checked as a whole before anything runs. Quantities carry
+their unit (``430 mm``, ``1 mm/s``, ``8 s``); inside they are m, m/s and s.
 """
 
 from __future__ import annotations
@@ -66,12 +66,12 @@ class Scenario:
     lines: tuple[int, ...]
     trace_checks: tuple[TraceCheck, ...]
     bus_events: tuple[BusEvent, ...] = ()
-    """What happens on the bus between several nodes; times in s since it was started."""
+    """The events on the bus between several nodes; times in s since the bus was started."""
     expected: tuple[Expected, ...] = ()
     """Faults that the run shall or may show; any other one fails it."""
     plants: Mapping[str, PlantForm] = field(default_factory=dict)
     source: Source | None = None
-    """The file, to say where something stands."""
+    """The file, for the locations of errors."""
 
     def file_of(self, step: Replay) -> Path:
         """The log that a step replays."""
@@ -84,13 +84,13 @@ class Scenario:
 
     @property
     def folder(self) -> Path:
-        """The folder of the file, which the files that it names are looked for in."""
+        """The folder of the file, in which the files that it names are searched for."""
         assert self.source is not None
         return Path(self.source.file).parent
 
 
 def load_scenario(path: Path) -> Scenario:
-    """The scenario in a file; ScenarioError tells everything that is wrong with it."""
+    """The scenario in a file; ScenarioError has all errors of the file."""
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
@@ -106,7 +106,7 @@ def _unreadable(path: Path, reason: str) -> ScenarioError:
 
 
 def parse_scenario(text: str, file: str = "scenario.yaml") -> Scenario:
-    """The scenario in ``text``; ScenarioError tells everything that is wrong with it."""
+    """The scenario in ``text``; ScenarioError has all errors of the text."""
     tree, found = grow(text, file)
     if tree is None and all(one.code in ("RV-0104", "RV-0203") for one in found):
         hint = "start with `scenario: A title` and `steps:`"

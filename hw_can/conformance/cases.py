@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The cases of the loopback test. Each returns what it saw, or raises why not."""
+"""The cases of the loopback test. Each returns its result in words, or raises the reason."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ _LIMITS = {
     ("socketcand", "remote"): "socketcand loses remote frames",
     ("socketcand", "fd"): "socketcand has no FD frames",
 }
-"""What python-can's interfaces cannot do, by their own formats."""
+"""The features that python-can's interfaces lack, by their own formats."""
 
 _CARRY_ERRORS = frozenset({"virtual", "ravenchart"})
-"""Interfaces whose bus is a simulated one, where an error frame can be asked for."""
+"""Interfaces whose bus is a simulated one, where an error frame can be requested."""
 
 
 class Failed(Exception):  # noqa: N818
-    """The case found something wrong."""
+    """The case found an error."""
 
 
 class Skipped(Exception):  # noqa: N818
@@ -58,7 +58,7 @@ class Skipped(Exception):  # noqa: N818
 
 @dataclass(frozen=True, slots=True)
 class ConformanceCase:
-    """One case: what it is called, and how it is run."""
+    """One case: its name, and its function."""
 
     name: str
     run: Callable[[Ends], str]
@@ -117,7 +117,7 @@ def _needs(ends: Ends, *features: str) -> None:
 
 
 def exact(sent: Sequence[can.Message], got: Sequence[can.Message]) -> str:
-    """The frames that were sent, in their order; Failed names the first that is not."""
+    """Compare with the frames that were sent, in their order; Failed names the first difference."""
     for number, (a, b) in enumerate(zip(sent, got, strict=False), 1):
         if not a.equals(b, timestamp_delta=None, check_channel=False, check_direction=False):
             raise Failed(f"frame {number} of {len(sent)}: sent {_shown(a)}, got {_shown(b)}")
@@ -147,7 +147,7 @@ def _identifiers(ends: Ends) -> str:
 
 
 def _one_by_one(ends: Ends, frames: Sequence[can.Message]) -> list[can.Message]:
-    """Sent each after the last arrived: so arbitration between them plays no part."""
+    """Send each frame after the last one arrived, so that no arbitration is between them."""
     found: list[can.Message] = []
     for one in frames:
         got = ends.across([one])
@@ -193,7 +193,7 @@ def _burst_frames(base: int) -> list[can.Message]:
 
 
 def _none_lost(sent: Sequence[can.Message], got: Sequence[can.Message]) -> None:
-    """The same frames in any order, for a controller may send by priority."""
+    """Compare the frames in any order, because a controller may send by priority."""
 
     def key(message: can.Message) -> tuple[int, bytes]:
         return message.arbitration_id, bytes(message.data)
@@ -244,7 +244,7 @@ def _filters(ends: Ends) -> str:
 
 
 def _sent_and_seen(ends: Ends, one: can.Message) -> list[can.Message]:
-    """What comes of one frame that may be filtered out."""
+    """The frames received after sending one frame that may be filtered out."""
     ends.near.send(one)
     end = time.monotonic() + SETTLING
     while (rest := end - time.monotonic()) > 0:

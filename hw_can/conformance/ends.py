@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The two ends of the bus under test: how they are opened, and frames sent across."""
+"""The two ends of the bus under test: opening them, and sending frames across."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PATIENCE = 2.0
 """Seconds without a frame after which no more is waited for."""
 
 UNANSWERED = 0.25
-"""The same, when the sender's controller is not error-active: nobody acknowledges."""
+"""The same, when the sender's controller is not error-active: no node acknowledges."""
 
 DRAINED = 100_000
 """Frames that are thrown away at most before a case."""
@@ -29,7 +29,7 @@ DRAINED = 100_000
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What is under test. ``bitrate`` in bit/s, None for that of the interface."""
+    """The interfaces under test. ``bitrate`` in bit/s, None for that of the interface."""
 
     interface: str
     channel: str
@@ -62,15 +62,15 @@ class Ends:
     """Error frames that came although none was sent."""
 
     def across(self, frames: Sequence[can.Message]) -> list[can.Message]:
-        """What arrives at the far end when the near one sends ``frames``."""
+        """The frames that arrive at the far end when the near one sends ``frames``."""
         return exchange(self, self.near, self.far, frames)
 
     def back(self, frames: Sequence[can.Message]) -> list[can.Message]:
-        """What arrives at the near end when the far one sends ``frames``."""
+        """The frames that arrive at the near end when the far one sends ``frames``."""
         return exchange(self, self.far, self.near, frames)
 
     def drain(self) -> None:
-        """Throw away what earlier cases left, but keep its error frames."""
+        """Discard the frames that earlier cases left, but keep error frames."""
         for bus in (self.near, self.far):
             for _ in range(DRAINED):
                 message = bus.recv(0)
@@ -88,7 +88,7 @@ class Ends:
         return True
 
     def close(self) -> None:
-        """Leave the bus, as far as that goes."""
+        """Leave the bus, as far as possible."""
         for bus in (self.near, self.far):
             with suppress(Exception):
                 bus.shutdown()
@@ -113,7 +113,7 @@ def opened(interface: str, channel: str, setup: Setup, *, echo: bool = False) ->
 
 
 def is_faulty(bus: can.BusABC) -> bool:
-    """Does the interface say that its controller is not error-active?"""
+    """Whether the interface reports that its controller is not error-active."""
     return type(bus).state is not can.BusABC.state and bus.state is not can.BusState.ACTIVE
 
 
@@ -131,7 +131,7 @@ class _Listening(threading.Thread):
         self.got: list[can.Message] = []
         self.fault: Exception | None = None
         self.busy_at = time.monotonic()
-        """When a frame was sent or came last."""
+        """The time at which a frame was sent or received last."""
         self._ends, self._bus, self._count, self._errors = ends, bus, count, errors
         self._sender = sender
 
@@ -150,7 +150,7 @@ class _Listening(threading.Thread):
             self.fault = fault
 
     def _is_over(self, quiet: float) -> bool:
-        """Comes no frame any more, after none has come for ``quiet`` s?"""
+        """Whether no more frame is expected, after none has come for ``quiet`` s."""
         patience = self._ends.patience
         return quiet > patience or (min(UNANSWERED, patience) < quiet and is_faulty(self._sender))
 
@@ -158,10 +158,10 @@ class _Listening(threading.Thread):
 def exchange(
     ends: Ends, sender: can.BusABC, receiver: can.BusABC, frames: Sequence[can.Message]
 ) -> list[can.Message]:
-    """What ``receiver`` gets when ``sender`` sends ``frames`` one after the other.
+    """The frames that ``receiver`` gets when ``sender`` sends ``frames`` one after the other.
 
-    At most ``AHEAD`` are on their way: the buffer of a socket holds few more, and a
-    receiver that this machine leaves no time is no fault of the bus.
+    At most ``AHEAD`` are on their way: the buffer of a socket holds few more. A lack of
+    processor time for the receiver must not count as a fault of the bus.
     """
     errors = any(frame.is_error_frame for frame in frames)
     listening = _Listening(ends, receiver, sender, len(frames), errors=errors)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Runs the cases on two ends of a bus; what cannot be done is skipped, never passed."""
+"""Runs the cases on two ends of a bus; an impossible case is skipped, never passed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Progress = Callable[[str], None]
 
 
 class CaseVerdict(Enum):
-    """How a case ended."""
+    """The verdict on a case."""
 
     PASSED = "passed"
     FAILED = "FAILED"
@@ -30,7 +30,7 @@ class CaseVerdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """How one case went: what was seen, or the reason why not."""
+    """The result of one case: its observation, or the reason of its failure."""
 
     name: str
     verdict: CaseVerdict
@@ -40,7 +40,7 @@ class CaseResult:
 
 @dataclass(frozen=True, slots=True)
 class SuiteResult:
-    """How the suite went. ``latencies`` in ns; ``rate`` in frames per second."""
+    """The result of the suite. ``latencies`` in ns; ``rate`` in frames per second."""
 
     setup: Setup
     cases: tuple[CaseResult, ...]
@@ -48,24 +48,24 @@ class SuiteResult:
     rate: float | None
 
     def count(self, verdict: CaseVerdict) -> int:
-        """How many cases ended so."""
+        """The number of cases with this verdict."""
         return sum(case.verdict is verdict for case in self.cases)
 
     @property
     def seconds(self) -> float:
-        """Of all cases together."""
+        """The time of all cases together."""
         return sum(case.seconds for case in self.cases)
 
     @property
     def passed(self) -> bool:
-        """Nothing failed, and something passed."""
+        """Whether no case failed, and at least one passed."""
         return self.count(CaseVerdict.FAILED) == 0 and self.count(CaseVerdict.PASSED) > 0
 
 
 def run(
     ends: Ends, progress: Progress = lambda name: None, cases: Sequence[ConformanceCase] = CASES
 ) -> SuiteResult:
-    """Run ``cases`` in order; once no frame arrives at all, the rest is skipped."""
+    """Run ``cases`` in order; once no frame arrives, the rest is skipped."""
     results: list[CaseResult] = []
     lost = False
     for case in cases:
@@ -114,7 +114,7 @@ def _run_one(ends: Ends, case: ConformanceCase) -> tuple[CaseVerdict, str]:
 
 
 def histogram(latencies: Sequence[int]) -> tuple[tuple[int, int], ...]:
-    """How many of ``latencies`` (ns) are below each power of two in us, and not the last.
+    """The number of ``latencies`` (ns) below each power of two in us, and not below the last.
 
     The powers go without a gap from the lowest to the highest that has any.
     """

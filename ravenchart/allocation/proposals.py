@@ -285,7 +285,7 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             one.name,
             one.node,
             one.core,
-            one.released_by,
+            None if one.released_by is None else str(one.released_by),
             one.priority,
             one.period,
             one.offset,

@@ -105,7 +105,7 @@ def bounds(facts: Facts) -> Iterator[Claim]:
             if limit is not None
         ]
         yield _bounded(
-            facts, f"chain-{chain.name}", (chain.name, *chain.path),
+            facts, f"chain-{chain.name}", (chain.name, *map(str, chain.path)),
             f"Chain {chain.name}: {', '.join(limits)}",
             "end-to-end latency along the way of the values, row by row", problems, certificate,
         )  # fmt: skip

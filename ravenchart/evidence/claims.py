@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator
 
-from ravenchart.behaviour.limits import ON_MODEL, UNFINISHED
+from ravenchart.behaviour.limits import OF_PROTOCOLS, ON_MODEL, UNFINISHED
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import (
     component_package,
@@ -30,6 +30,7 @@ from .claim import NO_RECORD, Claim, ClaimKind, Pairs, Shown, own_tool, verdict_
 from .coverage import coverage
 from .facts import Facts, NodeFacts
 from .memory import stacks
+from .protocols import protocols
 from .records import BelievedRecord
 from .results import FAILED, SKIPPED
 
@@ -42,6 +43,7 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
         *_charts(facts),
         *_frames(facts),
         *_behaviour(facts),
+        *protocols(facts),
         *bounds(facts),
         *_runtime(facts),
         *stacks(facts),
@@ -349,7 +351,7 @@ def _frames(facts: Facts) -> Iterator[Claim]:
 
 # --- Behaviour -------------------------------------------------------------------
 
-_OF_INVARIANTS = ("RV-1108", "RV-1109", ON_MODEL)
+_OF_OTHER_CLAIMS = (UNFINISHED, "RV-1108", "RV-1109", ON_MODEL, *OF_PROTOCOLS)
 _ALONE = "the invariant is no contract of the generated code"
 _IN_CODE = "that the generated code keeps it is a claim of its own"
 
@@ -358,7 +360,7 @@ def _behaviour(facts: Facts) -> Iterator[Claim]:
     system = facts.checked.system
     found = [one for one in facts.checked.diagnostics if one.code.startswith("RV-11")]
     unfinished = [one for one in found if one.code == UNFINISHED]
-    others = [one for one in found if one.code not in (UNFINISHED, *_OF_INVARIANTS)]
+    others = [one for one in found if one.code not in _OF_OTHER_CLAIMS]
     regions = tuple(f"{c.name}.{r.name}" for c in system.components for r in c.regions)
     told = tuple(f"{one.origin}: {one.message} ({one.code})" for one in (*others, *unfinished))
     tool = f"{own_tool()}, z3"

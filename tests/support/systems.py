@@ -12,10 +12,15 @@ from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.nodes import Node
-from ravenchart.gen.model.system import SharedObject, Shutdown, System, Task
+from ravenchart.gen.model.system import Carried, SharedObject, Shutdown, Stop, System, Task
 from ravenchart.gen.origins import Origin
 
 HERE = Origin("model.yaml", 1, 1)
+
+
+def stops_of(*places: str) -> tuple[Stop, ...]:
+    """The stops of a way: each is ``instance.name``, or the name of a message."""
+    return tuple(End(*one.split(".")) if "." in one else Carried(one) for one in places)
 
 
 def task(

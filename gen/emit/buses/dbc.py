@@ -156,7 +156,7 @@ def _cycle_time(system: System, message: Message) -> int | None:
     longest, source = message.longest, message.source
     if source is not None and message.transmission is None:
         component = system.instance(source.instance).component
-        if any(source.port in activity.may_send for activity in component.activities):
+        if any(source.name in activity.may_send for activity in component.activities):
             return None
     return None if longest is None else longest // 1_000_000
 

@@ -105,7 +105,7 @@ def _received(system: System, bus: Bus) -> tuple[Message, ...]:
 
 def _taker(message: Message, target: End) -> str:
     """The procedure of a receiver."""
-    return f"Put_{ada_case(target.port)}" if message.call is None else received_as(message)
+    return f"Put_{ada_case(target.name)}" if message.call is None else received_as(message)
 
 
 def _format(message: Message) -> DottedName:

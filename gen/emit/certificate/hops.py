@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
 
@@ -53,22 +54,21 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
         if isinstance(place, Carried):
             hops += _message(system, place.message, following)
             continue
-        owner, _, name = place.rpartition(".")
-        component = system.instance(owner).component
+        component = system.instance(place.instance).component
         rows = {item.name: item for item in component.runnables()}
-        handled = name in {port.name for port in component.inputs()}
-        if not handled and name not in rows:
+        handled = place.name in {port.name for port in component.inputs()}
+        if not handled and place.name not in rows:
             continue
         if not sure:
             hops[-1] = replace(hops[-1], sure=False)
         sure = True
         if handled:
-            hops.append(_handler(system, owner, name, hops))
+            hops.append(_handler(system, place, hops))
         else:
-            row = rows[name]
-            hops.append(_row(system, place, row, hops))
-            if following is not None:
-                sure = component.renews(row, str(following).rpartition(".")[2])
+            row = rows[place.name]
+            hops.append(_row(system, str(place), row, hops))
+            if isinstance(following, End):
+                sure = component.renews(row, following.name)
     return tuple(_irregular(system, chain, hops))
 
 
@@ -91,7 +91,7 @@ def _seldom(system: System, place: Stop) -> bool:
     message = named(system.messages, place.message)
     if message.source is None or message.call is not None or message.transmission is not None:
         return False
-    component, port = system.instance(message.source.instance).component, message.source.port
+    component, port = system.instance(message.source.instance).component, message.source.name
     return not all(component.renews(row, port) for row in component.senders(port))
 
 
@@ -129,18 +129,18 @@ def _row(
     return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)
 
 
-def _handler(system: System, owner: str, port: str, hops: list[ClaimedHop]) -> ClaimedHop:
+def _handler(system: System, end: End, hops: list[ClaimedHop]) -> ClaimedHop:
     """The port region of an instance, as far as it handles this port."""
-    element = f"{owner}.ports"
-    queued = system.instance(owner).component.port(port).kind is PortKind.QUEUED
+    element = f"{end.instance}.ports"
+    queued = system.instance(end.instance).component.port(end.name).kind is PortKind.QUEUED
     many = [
         row.steps_per_execution if isinstance(row, Region) else 1
         for connection in system.connections
-        if (connection.target.instance, connection.target.port) == (owner, port)
+        if connection.target == end
         for row in system.instance(connection.source.instance).component.runnables()
-        if connection.source.port in row.sends
+        if connection.source.name in row.sends
     ]
-    if hops and system.woken_by(f"{owner}.{port}") is not None:
+    if hops and system.woken_by(end) is not None:
         return ClaimedHop(element, "row", "woken", max(many))
     if queued and hops and sum(many) > 1:
         return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)

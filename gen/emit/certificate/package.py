@@ -113,7 +113,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     rows = {hop.element for hop in hops if hop.kind == "row"}
     handed = {hop.element for hop in hops if hop.kind == "handed"}
     for message, end in age_limited_ports(system):
-        received = system.reception(message, str(end))
+        received = system.reception(message, end)
         handed |= set() if received is None else {received.element}
     for _, _, there, back in transferred(system):
         handed |= {there.element, back.element}

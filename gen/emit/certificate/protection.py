@@ -43,7 +43,7 @@ def age_limited_ports(system: System) -> tuple[tuple[Message, End], ...]:
             continue
         for end in message.targets:
             component = system.instance(end.instance).component
-            if component.port(end.port).max_age is not None and component.port_region is not None:
+            if component.port(end.name).max_age is not None and component.port_region is not None:
                 found.append((message, end))
     return tuple(found)
 
@@ -92,9 +92,9 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
 def _stale(system: System, message: Message, end: End, claimed: int) -> list[Decl]:
     """From when a frame is due that is not usable, or does not come: when its port is Stale."""
     own, processor = name_of(str(end)), system.processor_of(f"{end.instance}.ports")
-    received = system.reception(message, str(end))
+    received = system.reception(message, end)
     component = system.instance(end.instance).component
-    age = component.port(end.port).max_age
+    age = component.port(end.name).max_age
     assert received is not None
     assert component.port_region is not None
     assert age is not None

@@ -70,7 +70,7 @@ BATCH = 12
 """The transitions of such a procedure: the prover has few to see at a time."""
 ALONE = 20
 """In charts with orthogonal regions and more transitions than this, each transition ends in an
-assertion of its own: the prover of the younger age gives up on all of them at once."""
+assertion of its own. The provers of the younger age give up on all of them at once."""
 
 _BEFORE, _CHOSEN = Param("Before", "in", "Region"), Param("Chosen", "in", "Firing")
 _WAS = "Was"

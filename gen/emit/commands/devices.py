@@ -215,7 +215,8 @@ def _piece(system: System, device: Device, kind: DeviceType, header: str) -> lis
         *lifecycle_bodies(device, driver, to_driver),
         *(_work(system, kind, one, to_driver) for one in called(system, device)),
     ]
-    items: list[Decl] = [Comment(f"[{device.name}] called by {', '.join(callers(system, device))}")]
+    rows = ", ".join(map(str, callers(system, device)))
+    items: list[Decl] = [Comment(f"[{device.name}] called by {rows}")]
     withs = [ref(root_package(system), driver), device_states_package(system, kind)]
     if kind.tells_apart:
         withs.append(ref(root_package(system), units_package(kind)))

@@ -92,7 +92,7 @@ def publishes(
     """The last statements of a row that writes published data: it sends those whose turn it is."""
     for message in publications(system, instance.name, row):
         assert message.source is not None
-        item = ada_case(message.source.port)
+        item = ada_case(message.source.name)
         held = ref(f"{item}_Own")
         if isinstance(row, Region):
             held = ref(f"{ada_case(row.name)}_Region", "Data", item)

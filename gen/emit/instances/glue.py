@@ -429,7 +429,7 @@ class Glue(Site):
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
-            name = ref(f"Put_{ada_case(end.port)}")
+            name = ref(f"Put_{ada_case(end.name)}")
             target = (
                 name if end.instance == self.instance.name else ref(ada_case(end.instance), name)
             )

@@ -13,13 +13,14 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, do
 from ravenchart.gen.model.component import Port
+from ravenchart.gen.model.instances import End
 
 from .site import Site
 
 
 def releases(site: Site, port: Port) -> bool:
     """Whether the values of an input port release a processor."""
-    return site.system.woken_by(f"{site.instance.name}.{port.name}") is not None
+    return site.system.woken_by(End(site.instance.name, port.name)) is not None
 
 
 def wait_spec(site: Site, port: Port) -> Iterator[Decl]:

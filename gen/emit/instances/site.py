@@ -66,7 +66,7 @@ class Site:
     def _connected_inputs(self) -> tuple[Port, ...]:
         targets = [c.target for c in self.system.connections]
         targets += [t for m in self.system.messages for t in m.targets]
-        names = {t.port for t in targets if t.instance == self.instance.name}
+        names = {t.name for t in targets if t.instance == self.instance.name}
         names |= {poll.port for poll in self.system.polls if poll.instance == self.instance.name}
         if self.noted:
             return self.instance.component.inputs()

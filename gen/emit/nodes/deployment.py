@@ -61,6 +61,7 @@ from ravenchart.gen.emit.tables.trace_calls import (
 )
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
@@ -253,10 +254,10 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
 
 def _wait(processor: Processor) -> DottedName:
     """The call in which a sporadic processor waits: for a frame of a bus, or a value of a port."""
-    end = processor.released_by_port
-    if end is not None:
-        return ref(ada_case(end.instance), f"Await_{ada_case(end.port)}")
-    return ref(ada_case(processor.released_by or ""), "Receiver.Wait")
+    by = processor.released_by
+    if isinstance(by, End):
+        return ref(ada_case(by.instance), f"Await_{ada_case(by.name)}")
+    return ref(ada_case(by or ""), "Receiver.Wait")
 
 
 def _checks(processor: Processor, offset: Expr) -> list[Decl]:

@@ -198,7 +198,7 @@ def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
         late = OperatorChain(">=", (now, earliest))
         following = Assign(earliest, OperatorChain("+", (now, number(processor.period))))
         rows = [stmt for slot in processor.slots for stmt in _run(root, slot)]
-        ask = do(ref(root, ada_case(end.instance), f"Ask_{ada_case(end.port)}"), ref("Waiting"))
+        ask = do(ref(root, ada_case(end.instance), f"Ask_{ada_case(end.name)}"), ref("Waiting"))
         run = IfStatement(((ref("Waiting"), (following, *rows)),))
         body.append(IfStatement(((OperatorChain("and then", (due, late)), (ask, run)),)))
     times = _integers(len(woken))

@@ -40,7 +40,7 @@ from tests.support.certificates import random_system
 from tests.support.plant_model import plant
 from tests.support.pump import system_of
 from tests.support.robot_files import trace_map
-from tests.support.systems import bus, message, shared, system, task
+from tests.support.systems import bus, message, shared, stops_of, system, task
 
 
 def late() -> System:
@@ -93,8 +93,8 @@ def test_a_message_that_is_late_says_what_goes_before_it() -> None:
 
 
 def chain(*path: str, reaction: int) -> System:
-    limits = (Ns(reaction), None)
-    return routed(replace(plant(), chains=(Chain("flow", plant().origin, path, *limits),)))
+    wanted = Chain("flow", plant().origin, stops_of(*path), Ns(reaction), None)
+    return routed(replace(plant(), chains=(wanted,)))
 
 
 def test_chains_that_are_broken_or_late_are_findings() -> None:
@@ -156,7 +156,7 @@ def test_where_nothing_suffices_alone_it_is_told_what_helps_most() -> None:
              (("a", 3, 900_000), ("b", 2, 800_000), ("c", 1, 500_000))]  # fmt: skip
     lines = advice.lines(advice.of_model(analyse(system(tasks))))
     assert lines[:4] == (
-        "No single change would meet all deadlines.",
+        "No change of one WCET, period or order alone would meet all deadlines.",
         "  without a, all else must still shrink by 23.2 %",
         "  without b, all else must still shrink by 28.7 %",
         "  without c, all else must still shrink by 41.2 %",

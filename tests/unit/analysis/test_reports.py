@@ -116,7 +116,7 @@ def test_the_report_of_a_plain_file_has_its_sections_and_contents(
     for section in ("Response times", "Critical instants", "From end to end", "Compared with"):
         assert f">{section}" in text.split("</nav>")[0]
     assert text.count('<h2 id="section-') == text.count('<li><a href="#section-') == 5
-    assert "frame_cmd: the schedule that its bound stands for" in text
+    assert "frame_cmd: the schedule behind its bound" in text
     assert "The hops of control" in text and ">worse<" in text
     assert "src=" not in text and "<script>" in text
 

@@ -23,6 +23,7 @@ from ravenchart.gen.model.commands import Device
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
+from tests.support.systems import stops_of
 
 MODEL = (ROOT / "tests" / "feature" / "devices" / "model.yaml").read_text()
 
@@ -284,7 +285,7 @@ def test_a_chain_goes_through_a_queue_of_requests() -> None:
             "chains:\n  push: {path: [hurry_1.Push, mover_1.Serve], reaction: 60 ms}\nshutdown:",
         ),
     )
-    assert system.chains[0].way == ("hurry_1.Push", "hurry_1.Set_Goal", "mover_1.Serve")
+    assert system.chains[0].way == stops_of("hurry_1.Push", "hurry_1.Set_Goal", "mover_1.Serve")
     reaction = analyse(system).limited[0][1].reaction
     # a push waits for the next execution of its server: longer than that takes, and no longer
     # than a period of each and the time that both need
@@ -294,7 +295,7 @@ def test_a_chain_goes_through_a_queue_of_requests() -> None:
 def test_a_published_item_leads_on_to_who_reads_the_command() -> None:
     chains = "chains:\n  seen: {path: [mover_1.Move, boss_1.Plan], age: 1 s}\nshutdown:"
     system = _requests(("shutdown:", chains))
-    assert system.chains[0].way == ("mover_1.Move", "mover_1.Now", "boss_1.Plan")
+    assert system.chains[0].way == stops_of("mover_1.Move", "mover_1.Now", "boss_1.Plan")
 
 
 def test_caller_is_the_same_whether_a_command_is_queued_or_direct() -> None:

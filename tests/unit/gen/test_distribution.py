@@ -12,7 +12,8 @@ from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.gen.derive.completion import on_one_node, programs
 from ravenchart.gen.emit.program import generate
-from ravenchart.gen.model.system import Carried, System
+from ravenchart.gen.model.system import System
+from tests.support.systems import stops_of
 from tests.support.two_nodes import BUS, RECEPTION, TOGETHER, loaded, said, system_of
 
 
@@ -115,7 +116,7 @@ def test_a_message_reaches_every_node_that_listens() -> None:
     found = analyse(system)
     assert found.schedulable
     assert {"link.supervisor_order.log", "link.supervisor_order.drive"} <= set(found.deliveries)
-    way = Carried("supervisor_order"), "listener.order"
+    way = stops_of("supervisor_order", "listener.order")
     steps = [hop.step.name for hop in found.latency(way).hops]
     assert "link.driver_rx.supervisor_order.log" in steps
     assert "Link_Supervisor_Order_Log_Handed" in _certificate(system)
@@ -153,6 +154,15 @@ def test_objects_of_the_same_name_on_two_nodes_are_told_apart() -> None:
     assert {"panel.health", "drive.health", "panel.link.transmit", "drive.link.transmit"} <= set(
         names
     )
+
+
+def test_objects_are_told_apart_where_a_node_has_the_name_of_the_bus() -> None:
+    system = system_of(
+        ("  drive:\n", "  link:\n"), ("Linear_Servo, node: drive", "Linear_Servo, node: link")
+    )
+    names = [item.element for item in system.objects]
+    assert len(set(names)) == len(names)
+    assert {"panel.link.transmit", "link.link.transmit"} <= set(names)
 
 
 def test_a_simulation_has_both_on_one_node() -> None:

@@ -20,9 +20,10 @@ from ravenchart.gen.derive.completion import on_one_node, programs
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.commands import Remote, RemoteRead, Server
-from ravenchart.gen.model.system import Carried, System
+from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
+from tests.support.systems import stops_of
 
 pytestmark = pytest.mark.clock
 
@@ -104,12 +105,12 @@ def test_the_way_of_a_call_and_its_reply_is_a_chain_within_the_time_limit() -> N
     system = _system()
     chain = next(chain for chain in system.chains if chain.name == "boss_1_Home")
     assert chain.reaction == 60_000_000
-    assert chain.way == (
-        Carried("boss_1_Home"),
+    assert chain.way == stops_of(
+        "boss_1_Home",
         "mover_1.Motion",
         "mover_1.Serve",
         "mover_1.boss_1_Home_Reply",
-        Carried("boss_1_Home_Reply"),
+        "boss_1_Home_Reply",
     )
     found = analyse(system)
     assert found.schedulable
@@ -154,7 +155,7 @@ def test_what_is_read_comes_to_all_readers_of_other_nodes_in_one_message() -> No
     assert isinstance(system.bound["boss_2", "Get_Place"].provider, Server)
     (chain,) = [chain for chain in system.chains if chain.name == "boss_3_Get_Place"]
     assert (chain.reaction, chain.age) == (None, 60_000_000)
-    assert chain.way == (Carried("mover_1_Get_Place"), "boss_3.Get_Place", "boss_3.Plan")
+    assert chain.way == stops_of("mover_1_Get_Place", "boss_3.Get_Place", "boss_3.Plan")
 
 
 SERVED = "period: 10 ms\n        wcet: 200 us"

@@ -244,7 +244,7 @@ OUTPUT = {
     ("docs/architecture.md", "model.yaml ──load──> System"): "a drawing",
     ("docs/boards.md", "model.yaml:12:3: error: the offset"):
         "tests/unit/ravenchart/test_targets.py",
-    ("docs/devices.md", "model.yaml:31:7: error: Door calls Move in the state Off of Motion: "
+    ("docs/devices.md", "model.yaml:44:11: error: Door calls Move where Motion does not allow it: "
      "Closed -Stop-> Closed [RV-1112]"): "tests/unit/behaviour/test_protocols.py",
     ("docs/command-line.md", "--- 14:03:22 check model.yaml ---"): "tests/system/test_watch.py",
     ("docs/command-line.md", "compile controller: 31 of 55"):
