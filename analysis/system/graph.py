@@ -3,9 +3,9 @@
 
 """The dependencies of a system as a graph, and the chains through it.
 
-Nodes are an `End` for a row, port or data item, `Carried` for a message, the id for a row of a bus,
-and kind and name for components, instances and processors. Each node has its ``kind``. Edges point in the
-direction of values (``reads``, ``writes``, ``sends``, ``carries``). Other edges lead
+Nodes are an `End` for a row, port or data item, `Carried` for a message, and the id for a row of
+a bus. Components, instances and processors are kind and name. Each node has its ``kind``. Edges
+point in the direction of values (``reads``, ``writes``, ``sends``, ``carries``). Other edges lead
 from a processor to the rows it ``runs`` and from an instance to its component (``is``).
 """
 
