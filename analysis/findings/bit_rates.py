@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ravenchart.analysis.system.timing import Analysis, analyse
@@ -37,23 +37,23 @@ def blamed_on_a_bus(
     rate in its hint. A bus whose identifiers the analysis chooses is left out: another rate may
     give them another order.
     """
+
+    def left(bus: Bus, rate: int) -> set[object]:
+        """The limits that are exceeded at another rate."""
+        other = judged(_with_rate(analysis, bus, rate))
+        return {_subject(one) for one in other if one.is_error}
+
     if analysis.overloaded:
-        return tuple(_with_number(one, analysis, judged) for one in found)
+        return tuple(_with_number(one, analysis.overloaded, left) for one in found)
     late = [one for one in found if one.is_error]
     for bus in analysis.system.buses:
-        rates = tuple(_higher(bus))
-        if len(late) < SEVERAL or bus.audsley or not rates:
+        rates = _higher(bus)
+        if len(late) < SEVERAL or not rates:
             continue
-
-        def left(rate: int, bus: Bus = bus) -> set[object]:
-            """The limits that are exceeded at another rate."""
-            other = judged(_with_rate(analysis, bus, rate))
-            return {_subject(one) for one in other if one.is_error}
-
-        always = left(rates[-1])
+        always = left(bus, rates[-1])
         gone = [one for one in late if _subject(one) not in always]
         if len(gone) >= SEVERAL:
-            rate = next(one for one in rates if left(one) <= always)
+            rate = next(one for one in rates if left(bus, one) <= always)
             return (_too_slow(bus, rate, gone), *(one for one in found if one not in gone))
     return found
 
@@ -64,25 +64,27 @@ def _subject(one: Diagnostic) -> object:
 
 
 def _with_number(
-    one: Diagnostic, analysis: Analysis, judged: Callable[[Analysis], Sequence[Diagnostic]]
+    one: Diagnostic, overloaded: Sequence[Bus], left: Callable[[Bus, int], set[object]]
 ) -> Diagnostic:
     """The error of an overloaded bus with the rate that meets every limit, if there is one."""
-    bus = next((b for b in analysis.overloaded if b.origin == one.origin), None)
-    if bus is None or one.hint is None or bus.audsley:
+    bus = next((bus for bus in overloaded if bus.origin == one.origin), None)
+    rates = () if bus is None else _higher(bus)
+    rate = next((rate for rate in rates if bus is not None and not left(bus, rate)), None)
+    if rate is None:
         return one
-    for rate in _higher(bus):
-        if not any(other.is_error for other in judged(_with_rate(analysis, bus, rate))):
-            text = (
-                f"{one.hint}: `bit_rate: {_spoken(rate)}` is the lowest standard rate that meets "
-            )
-            return replace(one, hint=f"{text}all limits")
-    return one
+    text = f"`bit_rate: {_spoken(rate)}` is the lowest standard rate that meets all limits"
+    return replace(one, hint=f"{one.hint}: {text}")
 
 
-def _higher(bus: Bus) -> Iterator[int]:
-    """The standard rates above that of the bus, and not above that of the data of its FD frames."""
+def _higher(bus: Bus) -> tuple[int, ...]:
+    """The standard rates above that of the bus, and not above that of the data of its FD frames.
+
+    None where the analysis chooses the identifiers.
+    """
+    if bus.audsley:
+        return ()
     most = STANDARD[-1] if bus.data_rate is None else min(STANDARD[-1], bus.data_rate)
-    return (rate for rate in STANDARD if bus.bit_rate < rate <= most)
+    return tuple(rate for rate in STANDARD if bus.bit_rate < rate <= most)
 
 
 def _with_rate(analysis: Analysis, bus: Bus, rate: int) -> Analysis:

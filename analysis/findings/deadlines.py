@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
+from functools import partial
 
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import HopLatency
@@ -51,10 +52,7 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
     Deadlines of tasks and messages in ``but`` are left out. So is an error that only depends on
     another one, which has a note of how many there are.
     """
-
-    def judged(one: Analysis) -> tuple[Diagnostic, ...]:
-        return each_finding(one, but)
-
+    judged = partial(each_finding, but=but)
     return blamed_on_a_bus(analysis, judged(analysis), judged)
 
 

@@ -10,9 +10,10 @@ impossible that is possible. Each finding of a possible situation has a way to i
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from functools import partial
 
 from ravenchart.behaviour.limits import EFFORT, UNFINISHED, Behaviour
+from ravenchart.gen.derive.clients import clients
 from ravenchart.gen.diagnostics import Diagnostic, in_order, warning
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
@@ -23,7 +24,7 @@ from .inductive import contracts
 from .invariants import NOT_PROVED, VIOLATED, invariants_hold
 from .livelock import eventless_steps_end
 from .outcomes import TooManyWays
-from .protocols import protocols_followed
+from .protocols import protocol_followed
 from .reach import Reachable
 
 
@@ -43,9 +44,13 @@ def findings(system: System, effort: int = EFFORT) -> tuple[Diagnostic, ...]:
     """The findings on the behaviour of a valid model, in order of location."""
     budget = Budget(effort)
     found: list[Diagnostic] = []
-    for rules, component in product((_of_component, protocols_followed), system.components):
+    parts = [
+        *((one, partial(_of_component, one)) for one in system.components),
+        *((one.component, partial(protocol_followed, one)) for one in clients(system)),
+    ]
+    for component, rules in parts:
         try:
-            for item in rules(component, system, budget):
+            for item in rules(system, budget):
                 found.append(item)
         except Exhausted:
             looked = f"{budget.situations} situations took all the work that a check may take"

@@ -19,7 +19,7 @@ from functools import partial
 import z3
 
 from ravenchart.behaviour.limits import MISUSED, NOT_FOLLOWED
-from ravenchart.gen.derive.clients import Client, clients
+from ravenchart.gen.derive.clients import Client
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -47,25 +47,22 @@ ITEM = variable(Reading.DATA, PROTOCOL, None)
 """The state of the protocol."""
 
 
-def protocols_followed(
-    component: Component, system: System, budget: Budget
-) -> Iterator[Diagnostic]:
+def protocol_followed(client: Client, system: System, budget: Budget) -> Iterator[Diagnostic]:
     """A client of a provider with a protocol calls its commands only where it may."""
-    for client in clients(system):
-        callers = client.callers
-        if client.component.name != component.name or not callers:
-            continue
-        reason = _hindrance(callers)
-        if reason is not None:
-            yield _not_checked(client, callers[0], reason)
-            continue
-        own = [one for one in system.instances if one.name in client.instances]
-        others = [one for one in system.instances if one.component.name != component.name]
-        bound = replace(system, instances=(*others, *own))
-        step = partial(_FollowedStep, caller=callers[0].name, client=client)
-        reach = Reachable(_with_item(client, callers[0]), bound, budget, step)
-        for found in open_invariants(reach, bound):
-            yield _misused(client, found)
+    callers = client.callers
+    if not callers:
+        return
+    reason = _hindrance(callers)
+    if reason is not None:
+        yield _not_checked(client, callers[0], reason)
+        return
+    own = [one for one in system.instances if one.name in client.instances]
+    others = [one for one in system.instances if one.component.name != client.component.name]
+    bound = replace(system, instances=(*others, *own))
+    step = partial(_FollowedStep, caller=callers[0].name, client=client)
+    reach = Reachable(_with_item(client, callers[0]), bound, budget, step)
+    for found in open_invariants(reach, bound):
+        yield _misused(client, found)
 
 
 def _hindrance(callers: tuple[Region | Activity, ...]) -> str | None:
@@ -113,26 +110,28 @@ def _misuse(command: str) -> str:
     return f"not {command}"
 
 
-@dataclass
+@dataclass(kw_only=True)
 class _FollowedStep(OpenStep):
     """A step whose calls move the protocol on behind it."""
 
-    caller: str = ""
-    client: Client | None = None
+    caller: str
+    client: Client
 
     def run(self) -> str | None:
         """Make the step, then the calls that it has asked for."""
-        client = self.client
-        if client is None or self.tree.region.name != self.caller:
+        if self.tree.region.name != self.caller:
             return super().run()
-        for command in client.in_order:
+        commands = self.client.in_order
+        for command in commands:
             self.store[_asked(command)] = z3.BoolVal(False)
         stuck = super().run()
         value = self.read(ITEM)
-        for command in client.in_order:
+        for command in commands:
             asked = self.store.pop(_asked(command))
             if not z3.is_false(asked):
-                value = z3.simplify(z3.If(asked, _after(client.protocol, command, value), value))
+                value = z3.simplify(
+                    z3.If(asked, _after(self.client.protocol, command, value), value)
+                )
                 self.store[ITEM] = value
         return stuck
 

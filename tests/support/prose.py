@@ -173,10 +173,6 @@ def of_comments() -> Iterator[Sentence]:
     """The sentences of docstrings, of the texts below attributes, and of comments in Python."""
     for folder in PRODUCT:
         for path in sorted((ROOT / folder).rglob("*.py")):
-            if path.is_relative_to(ROOT / folder) and not path.resolve().is_relative_to(
-                (ROOT / folder).resolve()
-            ):
-                continue  # behind a link: it is read where it is
             name, text = str(path.relative_to(ROOT)), path.read_text(encoding="utf-8")
             for node in ast.walk(ast.parse(text)):
                 match node:

@@ -6,14 +6,13 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.system.timing import analyse
+from ravenchart.editing.evaluation import over
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.files.load import read_file
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 
@@ -24,11 +23,7 @@ RATE = "500 kbit/s"
 
 def late(text: str) -> tuple[Diagnostic, ...]:
     """The errors of time of the robot with that main file."""
-
-    def read(path: Path, limit: int) -> bytes:
-        return text.encode() if path == ROBOT else read_file(path, limit)
-
-    system = load(ROBOT, read).system
+    system = load(ROBOT, over({str(ROBOT): text.encode()})).system
     assert system is not None
     return tuple(one for one in findings(analyse(system)) if one.is_error)
 

@@ -14,9 +14,9 @@ import pytest
 
 from ravenchart.behaviour.rules import findings
 from ravenchart.building import checking, generation
+from ravenchart.editing.evaluation import over
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.gen.emit.program import generate
-from ravenchart.gen.files.load import read_file
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
@@ -29,11 +29,7 @@ MODEL = Path("model.yaml")
 
 def loaded(text: str, path: Path = MODEL) -> tuple[System | None, list[Diagnostic]]:
     """The model, and its errors."""
-
-    def read(wanted: Path, limit: int) -> bytes:
-        return text.encode() if wanted == path else read_file(wanted, limit)
-
-    found = load(path, read)
+    found = load(path, over({str(path): text.encode()}))
     return found.system, [one for one in found.diagnostics if one.is_error]
 
 
