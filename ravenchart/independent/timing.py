@@ -151,10 +151,10 @@ class Timing:
         jitter = self.jitter(task)
         self.same("tasks", f"{own}_J", jitter, f"the lateness of {task.element}")
         if not task.rows:
-            self.same("rows", f"{own}_Budget", task.wcet, f"the WCET {why}")
+            self.same("rows", f"{own}_Wcet", task.wcet, f"the WCET {why}")
         for row in task.rows:
             name, what = ada(row.element), f"of {row.element} by the model"
-            self.same("rows", f"{name}_Budget", row.wcet, f"the WCET {what}")
+            self.same("rows", f"{name}_Wcet", row.wcet, f"the WCET {what}")
             if not task.sporadic:
                 timed = own if all(one.divisor == 1 for one in task.rows) else name
                 self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
@@ -164,7 +164,7 @@ class Timing:
             self.same("sums", f"{own}_{letter}", cost, f"the sum of WCETs {why}")
             rows = [row.element for row in task.rows if row.divisor == divisor]
             rows = rows if task.rows else [task.element]
-            self.terms("sums", f"{own}_{letter}", [f"{ada(row)}_Budget" for row in rows])
+            self.terms("sums", f"{own}_{letter}", [f"{ada(row)}_Wcet" for row in rows])
         blocking = self.deployment.blocking(task)
         self.same("sums", f"{own}_B", blocking, f"the longest blocking of {task.element}")
 

@@ -94,8 +94,8 @@ def test_a_wcet_past_its_slack_does_not_compile(checkout: Path) -> None:
     certificate = checkout / "three" / "generated" / "three_components-timing_certificate.ads"
     _break(
         certificate,
-        "Two_Work_Budget : constant := 200_000;",
-        "Two_Work_Budget : constant := 200_001;",
+        "Two_Work_Wcet : constant := 200_000;",
+        "Two_Work_Wcet : constant := 200_001;",
     )
     options = ["-p", "-q", "-P", "three_components.gpr"]
     variables = {"MODE": "checks", "RAVENCHART_BUILD": str(checkout / "build")}

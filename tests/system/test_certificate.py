@@ -54,10 +54,10 @@ def test_every_claim_of_tasks_messages_and_chains_is_there(robot_text: str) -> N
 @pytest.mark.parametrize(
     ("number", "task"),
     [
-        ("Coordinator_Summarise_Budget", "supervision"),
-        ("Joint_Z_Position_Control_Budget", "control"),
-        ("Robot_Bus_Driver_Rx_X_Feedback_Budget", "robot_bus.driver_rx.x_feedback"),
-        ("Controller_Supervisor_Budget", "controller.supervisor"),
+        ("Coordinator_Summarise_Wcet", "supervision"),
+        ("Joint_Z_Position_Control_Wcet", "control"),
+        ("Robot_Bus_Driver_Rx_X_Feedback_Wcet", "robot_bus.driver_rx.x_feedback"),
+        ("Controller_Supervisor_Wcet", "controller.supervisor"),
         ("Controller_Context_Switch", "reception"),
         ("Controller_Critical_Section", "trajectory"),
     ],
@@ -113,5 +113,5 @@ def test_two_hundred_tasks_add_under_ten_seconds_to_a_build(tmp_path: Path) -> N
     assert found.schedulable
     spent = [now - then for now, then in zip(os.times()[:4], before[:4], strict=True)]
     assert sum(spent) < 10  # of processor time, the compiler's included
-    said = compiled(changed(text, "Task_150_Budget", 1), tmp_path)
+    said = compiled(changed(text, "Task_150_Wcet", 1), tmp_path)
     assert "task_150 claims a wrong response time" in said

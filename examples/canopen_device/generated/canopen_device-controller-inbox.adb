@@ -11,15 +11,22 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins, Item)));
-      end loop;
-      return None;
+      case Now is
+         when On_Asked =>
+            return
+              (if Enabled (Ask, Self, Now, Ins, Item) then Ask else None);
+         when On_Ordered =>
+            return
+              (if Enabled (Order, Self, Now, Ins, Item) then Order
+               else None);
+         when On_Sync_Came =>
+            return
+              (if Enabled (Synchronise, Self, Now, Ins, Item)
+                  then Synchronise
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -27,6 +27,22 @@ is
    subtype Firing is Selection range Initial_Entry .. Synchronise;
    subtype Transition is Selection range Ask .. Synchronise;
 
+   function In_Source
+     (T : Transition; Leaf : Inbox_States.Leaf) return Boolean is
+     (case T is
+        when Ask | Order | Synchronise => Leaf = Inbox_States.Open)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Inbox_States.Leaf) return Inbox_States.Leaf is
+     (case T is
+        when Initial_Entry => Inbox_States.Open,
+        when Ask | Order | Synchronise => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Order   : Canopen_Device.Order := (Setpoint => 200, Number => 0);
@@ -47,13 +63,6 @@ is
       Data    : Variables;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Inbox_States.Leaf) return Boolean is
-     (case T is
-        when Ask | Order | Synchronise => Leaf = Inbox_States.Open);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T    : Transition;
       Self : Region;
@@ -70,15 +79,9 @@ is
            when Order =>
               Now = On_Ordered and then Ins.Nmt = Nmt_States.Operational,
            when Synchronise =>
-              Now = On_Sync_Came and then Ins.Nmt = Nmt_States.Operational));
+              Now = On_Sync_Came and then Ins.Nmt = Nmt_States.Operational))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Inbox_States.Leaf) return Inbox_States.Leaf is
-     (case T is
-        when Initial_Entry => Inbox_States.Open,
-        when Ask | Order | Synchronise => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection;

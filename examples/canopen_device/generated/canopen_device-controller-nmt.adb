@@ -11,15 +11,29 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins, Item)));
-      end loop;
-      return None;
+      case Now is
+         when On_Commanded =>
+            return
+              (if Enabled (Start, Self, Now, Ins, Item) then Start
+               elsif Enabled (Stop, Self, Now, Ins, Item) then Stop
+               elsif Enabled (Prepare, Self, Now, Ins, Item) then Prepare
+               elsif Enabled (Reset_Node, Self, Now, Ins, Item)
+                  then Reset_Node
+               elsif Enabled (Reset_Communication, Self, Now, Ins, Item)
+                  then Reset_Communication
+               else None);
+         when Expiry_Of_Initialised =>
+            return
+              (if Enabled (Initialised, Self, Now, Ins, Item)
+                  then Initialised
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (Booted, Self, Now, Ins, Item) then Booted
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -32,6 +32,27 @@ is
    subtype Firing is Selection range Initial_Entry .. Reset_Communication;
    subtype Transition is Selection range Initialised .. Reset_Communication;
 
+   function In_Source
+     (T : Transition; Leaf : Nmt_States.Leaf) return Boolean is
+     (case T is
+        when Initialised => Leaf = Nmt_States.Initialisation,
+        when Booted => Leaf = Nmt_States.Boot_Up_Due,
+        when Start | Stop | Prepare | Reset_Node | Reset_Communication =>
+           Leaf in Nmt_States.Ready) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Nmt_States.Leaf is
+     (case T is
+        when Initial_Entry | Reset_Node | Reset_Communication =>
+           Nmt_States.Initialisation,
+        when Initialised => Nmt_States.Boot_Up_Due,
+        when Booted | Prepare => Nmt_States.Pre_Operational,
+        when Start => Nmt_States.Operational,
+        when Stop => Nmt_States.Stopped);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Boots  : Canopen_Device.Count := 0;
@@ -66,16 +87,6 @@ is
       Timers  : Time_Outs;
       Data    : Variables;
    end record;
-
-   function In_Source
-     (T : Transition; Leaf : Nmt_States.Leaf) return Boolean is
-     (case T is
-        when Initialised => Leaf = Nmt_States.Initialisation,
-        when Booted => Leaf = Nmt_States.Boot_Up_Due,
-        when Start | Stop | Prepare | Reset_Node | Reset_Communication =>
-           Leaf in Nmt_States.Ready);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T    : Transition;
@@ -115,18 +126,9 @@ is
               and then Item.Value_Nmt_Command.Service
                 = Canopen_Device.Reset_Communication
               and then (Item.Value_Nmt_Command.Node = 0
-                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id)));
+                 or else Item.Value_Nmt_Command.Node = Ins.Node_Id)))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Nmt_States.Leaf is
-     (case T is
-        when Initial_Entry | Reset_Node | Reset_Communication =>
-           Nmt_States.Initialisation,
-        when Initialised => Nmt_States.Boot_Up_Due,
-        when Booted | Prepare => Nmt_States.Pre_Operational,
-        when Start => Nmt_States.Operational,
-        when Stop => Nmt_States.Stopped);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -215,12 +215,10 @@ is
    end Put_Sync_In;
 
    procedure Put_Rpdo_1 (Item : Canopen_Device.Setpoint_Pdo) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Rpdo_1_Mailbox.Put (Item, Status);
+      Rpdo_1_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Device_Rpdo_1,
          0);
    end Put_Rpdo_1;
@@ -237,21 +235,13 @@ is
       case Item.Name is
          when Controller.Commanded =>
             Nmt_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Device_Commanded, 0);
-         when Controller.Sync_Came =>
+         when Controller.Sync_Came | Controller.Ordered
+            | Controller.Asked =>
             Inbox_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Device_Sync_Came, 0);
-         when Controller.Ordered =>
-            Inbox_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Device_Ordered, 0);
-         when Controller.Asked =>
-            Inbox_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Device_Asked, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Device_Commanded
+         + Ravenchart.Element_Id (Controller.Event_Name'Pos (Item.Name)), 0);
    end Offer;
 
    procedure Read_Nmt_Fill (Found : out Ravenchart.Queueing.Fill) is

@@ -53,22 +53,22 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: protocol in device.nmt_in.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
-   Line_Receive_Budget : constant := 40_000;
+   Line_Receive_Wcet : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_C : constant := Line_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Line_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [protocol] released every T. B: control in device.objects.
    Protocol_Priority : constant := System.Default_Priority + 2;
-   Device_Ports_Budget : constant := 150_000;
-   Device_Nmt_Budget : constant := 100_000;
-   Device_Inbox_Budget : constant := 100_000;
-   Device_Serve_Budget : constant := 100_000;
-   Device_Respond_Budget : constant := 100_000;
-   Device_Produce_Heartbeat_Budget : constant := 100_000;
-   Device_Report_Budget : constant := 100_000;
+   Device_Ports_Wcet : constant := 150_000;
+   Device_Nmt_Wcet : constant := 100_000;
+   Device_Inbox_Wcet : constant := 100_000;
+   Device_Serve_Wcet : constant := 100_000;
+   Device_Respond_Wcet : constant := 100_000;
+   Device_Produce_Heartbeat_Wcet : constant := 100_000;
+   Device_Report_Wcet : constant := 100_000;
    Protocol_T : constant := 5_000_000;
    Protocol_D : constant := 5_000_000;
    Protocol_Divisor : constant := 1;
@@ -78,15 +78,15 @@ is
       "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
    Protocol_C : constant :=
-     Device_Ports_Budget + Device_Nmt_Budget + Device_Inbox_Budget
-     + Device_Serve_Budget + Device_Respond_Budget
-     + Device_Produce_Heartbeat_Budget + Device_Report_Budget
+     Device_Ports_Wcet + Device_Nmt_Wcet + Device_Inbox_Wcet
+     + Device_Serve_Wcet + Device_Respond_Wcet
+     + Device_Produce_Heartbeat_Wcet + Device_Report_Wcet
      + 2 * Board_Context_Switch;
    Protocol_B : constant := Board_Critical_Section;
 
    --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
-   Device_Regulate_Budget : constant := 100_000;
+   Device_Regulate_Wcet : constant := 100_000;
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
    Control_Divisor : constant := 1;
@@ -95,88 +95,86 @@ is
      (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_C : constant :=
-     Device_Regulate_Budget + 2 * Board_Context_Switch;
+   Control_C : constant := Device_Regulate_Wcet + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.nmt] the driver, released by line.nmt. B: protocol in
    --  line.transmit.
-   Line_Driver_Rx_Nmt_Budget : constant := 40_000;
+   Line_Driver_Rx_Nmt_Wcet : constant := 40_000;
    Line_Driver_Rx_Nmt_T : constant := 10_000_000;
    Line_Driver_Rx_Nmt_D : constant := 10_000_000;
    Line_Driver_Rx_Nmt_J : constant := Line_Nmt_R;
    Line_Driver_Rx_Nmt_C : constant :=
-     Line_Driver_Rx_Nmt_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Nmt_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Nmt_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.sync] the driver, released by line.sync. B: protocol
    --  in line.transmit.
-   Line_Driver_Rx_Sync_Budget : constant := 40_000;
+   Line_Driver_Rx_Sync_Wcet : constant := 40_000;
    Line_Driver_Rx_Sync_T : constant := 10_000_000;
    Line_Driver_Rx_Sync_D : constant := 10_000_000;
    Line_Driver_Rx_Sync_J : constant := Line_Sync_R;
    Line_Driver_Rx_Sync_C : constant :=
-     Line_Driver_Rx_Sync_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Sync_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Sync_B : constant := Board_Critical_Section;
 
    --  [line.driver_tx.tpdo_1] the driver, released by protocol. B: protocol
    --  in line.transmit.
-   Line_Driver_Tx_Tpdo_1_Budget : constant := 40_000;
+   Line_Driver_Tx_Tpdo_1_Wcet : constant := 40_000;
    Line_Driver_Tx_Tpdo_1_T : constant := 5_000_000;
    Line_Driver_Tx_Tpdo_1_D : constant := 5_000_000;
    Line_Driver_Tx_Tpdo_1_J : constant := Protocol_R;
    Line_Driver_Tx_Tpdo_1_C : constant :=
-     Line_Driver_Tx_Tpdo_1_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Tpdo_1_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Tpdo_1_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.rpdo_1] the driver, released by line.rpdo_1. B:
    --  protocol in line.transmit.
-   Line_Driver_Rx_Rpdo_1_Budget : constant := 40_000;
+   Line_Driver_Rx_Rpdo_1_Wcet : constant := 40_000;
    Line_Driver_Rx_Rpdo_1_T : constant := 10_000_000;
    Line_Driver_Rx_Rpdo_1_D : constant := 10_000_000;
    Line_Driver_Rx_Rpdo_1_J : constant := Line_Rpdo_1_R;
    Line_Driver_Rx_Rpdo_1_C : constant :=
-     Line_Driver_Rx_Rpdo_1_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Rpdo_1_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Rpdo_1_B : constant := Board_Critical_Section;
 
    --  [line.driver_tx.sdo_response] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Sdo_Response_Budget : constant := 40_000;
+   Line_Driver_Tx_Sdo_Response_Wcet : constant := 40_000;
    Line_Driver_Tx_Sdo_Response_T : constant := 5_000_000;
    Line_Driver_Tx_Sdo_Response_D : constant := 5_000_000;
    Line_Driver_Tx_Sdo_Response_J : constant := Protocol_R;
    Line_Driver_Tx_Sdo_Response_C : constant :=
-     Line_Driver_Tx_Sdo_Response_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Sdo_Response_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Sdo_Response_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.sdo_request] the driver, released by
    --  line.sdo_request. B: protocol in line.transmit.
-   Line_Driver_Rx_Sdo_Request_Budget : constant := 40_000;
+   Line_Driver_Rx_Sdo_Request_Wcet : constant := 40_000;
    Line_Driver_Rx_Sdo_Request_T : constant := 5_000_000;
    Line_Driver_Rx_Sdo_Request_D : constant := 5_000_000;
    Line_Driver_Rx_Sdo_Request_J : constant := Line_Sdo_Request_R;
    Line_Driver_Rx_Sdo_Request_C : constant :=
-     Line_Driver_Rx_Sdo_Request_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Sdo_Request_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Sdo_Request_B : constant := Board_Critical_Section;
 
    --  [line.driver_tx.heartbeat] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Heartbeat_Budget : constant := 40_000;
+   Line_Driver_Tx_Heartbeat_Wcet : constant := 40_000;
    Line_Driver_Tx_Heartbeat_T : constant := 5_000_000;
    Line_Driver_Tx_Heartbeat_D : constant := 5_000_000;
    Line_Driver_Tx_Heartbeat_J : constant := Protocol_R;
    Line_Driver_Tx_Heartbeat_C : constant :=
-     Line_Driver_Tx_Heartbeat_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Heartbeat_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Heartbeat_B : constant := Board_Critical_Section;
 
    --  [board.probe] released every T. B: main in board.probe.board.
    Board_Probe_Priority : constant := System.Default_Priority + 5;
-   Board_Probe_Budget : constant := 20_000;
+   Board_Probe_Wcet : constant := 20_000;
    Board_Probe_T : constant := 1_000_000;
    Board_Probe_D : constant := 1_000_000;
    Board_Probe_J : constant := 0;
-   Board_Probe_C : constant :=
-     Board_Probe_Budget + 2 * Board_Context_Switch;
+   Board_Probe_C : constant := Board_Probe_Wcet + 2 * Board_Context_Switch;
    Board_Probe_B : constant := Board_Critical_Section;
 
    function Board_Probe_Up (W : Window) return Time is

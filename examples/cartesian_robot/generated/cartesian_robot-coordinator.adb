@@ -117,54 +117,38 @@ is
    end Put_Command;
 
    procedure Put_Report_X (Item : Cartesian_Robot.Joint_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Report_X_Mailbox.Put (Item, Status);
+      Report_X_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_X, 0);
    end Put_Report_X;
 
    procedure Put_Report_Y (Item : Cartesian_Robot.Joint_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Report_Y_Mailbox.Put (Item, Status);
+      Report_Y_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_Y, 0);
    end Put_Report_Y;
 
    procedure Put_Report_Z (Item : Cartesian_Robot.Joint_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Report_Z_Mailbox.Put (Item, Status);
+      Report_Z_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Coordinator_Report_Z, 0);
    end Put_Report_Z;
 
    procedure Offer (Item : Robot_Coordinator.Event) is
    begin
-      case Item is
-         when Robot_Coordinator.Commanded =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Commanded, 0);
-         when Robot_Coordinator.Joint_Lost =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Joint_Lost, 0);
-         when Robot_Coordinator.Shutdown =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Coordinator_Shutdown, 0);
-      end case;
+      Mission_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Coordinator_Commanded
+         + Ravenchart.Element_Id (Robot_Coordinator.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Mission_Fill (Found : out Ravenchart.Queueing.Fill) is

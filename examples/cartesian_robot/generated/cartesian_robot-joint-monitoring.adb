@@ -10,15 +10,20 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when Expiry_Of_Calm =>
+            return (if Enabled (Calm, Self, Now, Ins) then Calm else None);
+         when Conditions =>
+            return
+              (if Enabled (Strayed, Self, Now, Ins) then Strayed
+               elsif Enabled (Limit_Hit, Self, Now, Ins) then Limit_Hit
+               elsif Enabled (End_Reached, Self, Now, Ins) then End_Reached
+               elsif Enabled (Drive_Failed, Self, Now, Ins)
+                  then Drive_Failed
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

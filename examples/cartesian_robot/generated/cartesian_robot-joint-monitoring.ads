@@ -29,6 +29,23 @@ is
    subtype Firing is Selection range Initial_Entry .. Calm;
    subtype Transition is Selection range Strayed .. Calm;
 
+   function In_Source
+     (T : Transition; Leaf : Monitoring_States.Leaf) return Boolean is
+     (case T is
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
+           Leaf = Monitoring_States.Watching,
+        when Calm => Leaf = Monitoring_States.Alarmed) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Monitoring_States.Leaf is
+     (case T is
+        when Initial_Entry | Calm => Monitoring_States.Watching,
+        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
+           Monitoring_States.Alarmed);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Homed    : Boolean;
@@ -63,15 +80,6 @@ is
       Timers  : Time_Outs;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Monitoring_States.Leaf) return Boolean is
-     (case T is
-        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
-           Leaf = Monitoring_States.Watching,
-        when Calm => Leaf = Monitoring_States.Alarmed);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
@@ -95,15 +103,8 @@ is
               and then Ins.Feedback.Value.Condition
                 = Cartesian_Robot.Faulted
               and then Ins.Motion in Motion_States.Operational,
-           when Calm => Now = Expiry_Of_Calm));
+           when Calm => Now = Expiry_Of_Calm)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Monitoring_States.Leaf is
-     (case T is
-        when Initial_Entry | Calm => Monitoring_States.Watching,
-        when Strayed | Limit_Hit | End_Reached | Drive_Failed =>
-           Monitoring_States.Alarmed);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -10,15 +10,40 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when On_Ordered =>
+            return
+              (if Enabled (Start_Homing, Self, Now, Ins) then Start_Homing
+               elsif Enabled (Start_Move, Self, Now, Ins) then Start_Move
+               elsif Enabled (Halt, Self, Now, Ins) then Halt
+               elsif Enabled (Reset, Self, Now, Ins) then Reset
+               else None);
+         when On_Feedback_Lost =>
+            return (if Enabled (Lost, Self, Now, Ins) then Lost else None);
+         when On_Drive_Failed =>
+            return
+              (if Enabled (Failed, Self, Now, Ins) then Failed else None);
+         when On_Strayed =>
+            return
+              (if Enabled (Strayed, Self, Now, Ins) then Strayed else None);
+         when On_Limit_Hit =>
+            return
+              (if Enabled (Limit, Self, Now, Ins) then Limit else None);
+         when Expiry_Of_No_End =>
+            return
+              (if Enabled (No_End, Self, Now, Ins) then No_End else None);
+         when Conditions =>
+            return
+              (if Enabled (End_Found, Self, Now, Ins) then End_Found
+               elsif Enabled (End_Left, Self, Now, Ins) then End_Left
+               elsif Enabled (At_Speed, Self, Now, Ins) then At_Speed
+               elsif Enabled (No_Cruise, Self, Now, Ins) then No_Cruise
+               elsif Enabled (Brake, Self, Now, Ins) then Brake
+               elsif Enabled (Arrived, Self, Now, Ins) then Arrived
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

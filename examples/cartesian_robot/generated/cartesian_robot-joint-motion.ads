@@ -41,6 +41,36 @@ is
    subtype Firing is Selection range Initial_Entry .. Reset;
    subtype Transition is Selection range End_Found .. Reset;
 
+   function In_Source
+     (T : Transition; Leaf : Motion_States.Leaf) return Boolean is
+     (case T is
+        when End_Found => Leaf = Motion_States.Seeking,
+        when End_Left => Leaf = Motion_States.Backing_Off,
+        when At_Speed | No_Cruise => Leaf = Motion_States.Accelerating,
+        when Brake => Leaf = Motion_States.Cruising,
+        when Start_Homing | Start_Move => Leaf = Motion_States.Idle,
+        when No_End => Leaf in Motion_States.Homing,
+        when Arrived => Leaf in Motion_States.Moving,
+        when Halt | Lost | Failed | Strayed | Limit =>
+           Leaf in Motion_States.Operational,
+        when Reset => Leaf in Motion_States.Fault) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Motion_States.Leaf is
+     (case T is
+        when Initial_Entry | End_Left | Arrived | Halt | Reset =>
+           Motion_States.Idle,
+        when End_Found => Motion_States.Backing_Off,
+        when At_Speed => Motion_States.Cruising,
+        when No_Cruise | Brake => Motion_States.Braking,
+        when Start_Homing => Motion_States.Seeking,
+        when No_End | Lost | Failed | Strayed => Motion_States.Drive,
+        when Start_Move => Motion_States.Accelerating,
+        when Limit => Motion_States.Limit);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Goal  : Cartesian_Robot.Goal :=
@@ -84,22 +114,6 @@ is
       Timers  : Time_Outs;
       Data    : Variables;
    end record;
-
-   function In_Source
-     (T : Transition; Leaf : Motion_States.Leaf) return Boolean is
-     (case T is
-        when End_Found => Leaf = Motion_States.Seeking,
-        when End_Left => Leaf = Motion_States.Backing_Off,
-        when At_Speed | No_Cruise => Leaf = Motion_States.Accelerating,
-        when Brake => Leaf = Motion_States.Cruising,
-        when Start_Homing | Start_Move => Leaf = Motion_States.Idle,
-        when No_End => Leaf in Motion_States.Homing,
-        when Arrived => Leaf in Motion_States.Moving,
-        when Halt | Lost | Failed | Strayed | Limit =>
-           Leaf in Motion_States.Operational,
-        when Reset => Leaf in Motion_States.Fault);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
@@ -145,21 +159,9 @@ is
            when Reset =>
               Now = On_Ordered
               and then Ins.Order.Value.Kind = Cartesian_Robot.Reset
-              and then Ins.Feedback.State = Ravenchart.Fresh));
+              and then Ins.Feedback.State = Ravenchart.Fresh))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Motion_States.Leaf is
-     (case T is
-        when Initial_Entry | End_Left | Arrived | Halt | Reset =>
-           Motion_States.Idle,
-        when End_Found => Motion_States.Backing_Off,
-        when At_Speed => Motion_States.Cruising,
-        when No_Cruise | Brake => Motion_States.Braking,
-        when Start_Homing => Motion_States.Seeking,
-        when No_End | Lost | Failed | Strayed => Motion_States.Drive,
-        when Start_Move => Motion_States.Accelerating,
-        when Limit => Motion_States.Limit);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -127,40 +127,20 @@ is
    end Put_Order;
 
    procedure Put_Feedback (Item : Cartesian_Robot.Drive_Feedback) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Feedback_Mailbox.Put (Item, Status);
+      Feedback_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Joint_X_Feedback, 0);
    end Put_Feedback;
 
    procedure Offer (Item : Joint.Event) is
    begin
-      case Item is
-         when Joint.Ordered =>
-            Motion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Joint_X_Ordered, 0);
-         when Joint.Feedback_Lost =>
-            Motion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Joint_X_Feedback_Lost, 0);
-         when Joint.Strayed =>
-            Motion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Joint_X_Strayed, 0);
-         when Joint.Limit_Hit =>
-            Motion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Joint_X_Limit_Hit, 0);
-         when Joint.Drive_Failed =>
-            Motion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Joint_X_Drive_Failed, 0);
-      end case;
+      Motion_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Joint_X_Ordered
+         + Ravenchart.Element_Id (Joint.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Motion_Fill (Found : out Ravenchart.Queueing.Fill) is

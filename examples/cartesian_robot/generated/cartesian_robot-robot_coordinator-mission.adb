@@ -10,15 +10,47 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when On_Commanded =>
+            return
+              (if Enabled (Home, Self, Now, Ins) then Home
+               elsif Enabled (Home_Again, Self, Now, Ins) then Home_Again
+               elsif Enabled (Move, Self, Now, Ins) then Move
+               elsif Enabled (Halt, Self, Now, Ins) then Halt
+               elsif Enabled (Halt_Homing, Self, Now, Ins) then Halt_Homing
+               elsif Enabled (Recover, Self, Now, Ins) then Recover
+               else None);
+         when On_Joint_Lost =>
+            return
+              (if Enabled (Joint_Lost, Self, Now, Ins) then Joint_Lost
+               else None);
+         when On_Shutdown =>
+            return
+              (if Enabled (Shut_Down_Failed, Self, Now, Ins)
+                  then Shut_Down_Failed
+               elsif Enabled (Shut_Down_Recovering, Self, Now, Ins)
+                  then Shut_Down_Recovering
+               elsif Enabled (Shut_Down, Self, Now, Ins) then Shut_Down
+               else None);
+         when Expiry_Of_Under_Way =>
+            return
+              (if Enabled (Under_Way, Self, Now, Ins) then Under_Way
+               else None);
+         when Expiry_Of_Not_Recovered =>
+            return
+              (if Enabled (Not_Recovered, Self, Now, Ins) then Not_Recovered
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (Arrived, Self, Now, Ins) then Arrived
+               elsif Enabled (Homed, Self, Now, Ins) then Homed
+               elsif Enabled (Recovered, Self, Now, Ins) then Recovered
+               elsif Enabled (Joint_Failed, Self, Now, Ins)
+                  then Joint_Failed
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

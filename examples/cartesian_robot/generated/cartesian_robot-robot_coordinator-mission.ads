@@ -41,6 +41,39 @@ is
    subtype Firing is Selection range Initial_Entry .. Shut_Down;
    subtype Transition is Selection range Under_Way .. Shut_Down;
 
+   function In_Source
+     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
+     (case T is
+        when Under_Way => Leaf = Mission_States.Departing,
+        when Arrived => Leaf = Mission_States.Under_Way,
+        when Home => Leaf = Mission_States.Waiting,
+        when Home_Again | Move => Leaf = Mission_States.Ready,
+        when Homed | Halt_Homing => Leaf = Mission_States.Homing,
+        when Halt => Leaf in Mission_States.Travelling,
+        when Shut_Down_Failed | Recover => Leaf = Mission_States.Failed,
+        when Recovered | Not_Recovered | Shut_Down_Recovering =>
+           Leaf = Mission_States.Recovering,
+        when Joint_Failed | Joint_Lost | Shut_Down =>
+           Leaf in Mission_States.Active) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Mission_States.Leaf is
+     (case T is
+        when Initial_Entry | Recovered => Mission_States.Waiting,
+        when Under_Way => Mission_States.Under_Way,
+        when Arrived | Homed => Mission_States.Ready,
+        when Home | Home_Again => Mission_States.Homing,
+        when Move => Mission_States.Departing,
+        when Halt | Halt_Homing | Not_Recovered | Joint_Failed
+           | Joint_Lost =>
+           Mission_States.Failed,
+        when Shut_Down_Failed | Shut_Down_Recovering | Shut_Down =>
+           Mission_States.Shut_Down,
+        when Recover => Mission_States.Recovering);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Command  : Robot_Coordinator.Command_View;
@@ -90,23 +123,6 @@ is
       Leaf    : Mission_States.Leaf := Mission_States.Waiting;
       Timers  : Time_Outs;
    end record;
-
-   function In_Source
-     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
-     (case T is
-        when Under_Way => Leaf = Mission_States.Departing,
-        when Arrived => Leaf = Mission_States.Under_Way,
-        when Home => Leaf = Mission_States.Waiting,
-        when Home_Again | Move => Leaf = Mission_States.Ready,
-        when Homed | Halt_Homing => Leaf = Mission_States.Homing,
-        when Halt => Leaf in Mission_States.Travelling,
-        when Shut_Down_Failed | Recover => Leaf = Mission_States.Failed,
-        when Recovered | Not_Recovered | Shut_Down_Recovering =>
-           Leaf = Mission_States.Recovering,
-        when Joint_Failed | Joint_Lost | Shut_Down =>
-           Leaf in Mission_States.Active);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
@@ -168,23 +184,8 @@ is
                  or else Ins.Report_Z.Value.Condition
                    = Cartesian_Robot.Failed),
            when Joint_Lost => Now = On_Joint_Lost,
-           when Shut_Down => Now = On_Shutdown));
+           when Shut_Down => Now = On_Shutdown)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Mission_States.Leaf is
-     (case T is
-        when Initial_Entry | Recovered => Mission_States.Waiting,
-        when Under_Way => Mission_States.Under_Way,
-        when Arrived | Homed => Mission_States.Ready,
-        when Home | Home_Again => Mission_States.Homing,
-        when Move => Mission_States.Departing,
-        when Halt | Halt_Homing | Not_Recovered | Joint_Failed
-           | Joint_Lost =>
-           Mission_States.Failed,
-        when Shut_Down_Failed | Shut_Down_Recovering | Shut_Down =>
-           Mission_States.Shut_Down,
-        when Recover => Mission_States.Recovering);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -57,20 +57,20 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in joint_x.feedback.mailbox.
    Reception_Priority : constant := System.Default_Priority + 4;
-   Robot_Bus_Receive_Budget : constant := 40_000;
+   Robot_Bus_Receive_Wcet : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
    Reception_C : constant :=
-     Robot_Bus_Receive_Budget + 4 * Controller_Context_Switch;
+     Robot_Bus_Receive_Wcet + 4 * Controller_Context_Switch;
    Reception_B : constant := Controller_Critical_Section;
 
    --  [trajectory] released every T. B: control in
    --  joint_x.feedback.mailbox.
    Trajectory_Priority : constant := System.Default_Priority + 3;
-   Joint_X_Trajectory_Step_Budget : constant := 100_000;
-   Joint_Y_Trajectory_Step_Budget : constant := 100_000;
-   Joint_Z_Trajectory_Step_Budget : constant := 100_000;
+   Joint_X_Trajectory_Step_Wcet : constant := 100_000;
+   Joint_Y_Trajectory_Step_Wcet : constant := 100_000;
+   Joint_Z_Trajectory_Step_Wcet : constant := 100_000;
    Trajectory_T : constant := 5_000_000;
    Trajectory_D : constant := 5_000_000;
    Trajectory_Divisor : constant := 1;
@@ -80,21 +80,21 @@ is
       "trajectory must keep divisors and phases of its rows");
    Trajectory_J : constant := 0;
    Trajectory_C : constant :=
-     Joint_X_Trajectory_Step_Budget + Joint_Y_Trajectory_Step_Budget
-     + Joint_Z_Trajectory_Step_Budget + 2 * Controller_Context_Switch;
+     Joint_X_Trajectory_Step_Wcet + Joint_Y_Trajectory_Step_Wcet
+     + Joint_Z_Trajectory_Step_Wcet + 2 * Controller_Context_Switch;
    Trajectory_B : constant := Controller_Critical_Section;
 
    --  [control] released every T. B: supervision in joint_x.order.mailbox.
    Control_Priority : constant := System.Default_Priority + 2;
-   Joint_X_Ports_Budget : constant := 100_000;
-   Joint_X_Monitoring_Budget : constant := 100_000;
-   Joint_X_Position_Control_Budget : constant := 150_000;
-   Joint_Y_Ports_Budget : constant := 100_000;
-   Joint_Y_Monitoring_Budget : constant := 100_000;
-   Joint_Y_Position_Control_Budget : constant := 150_000;
-   Joint_Z_Ports_Budget : constant := 100_000;
-   Joint_Z_Monitoring_Budget : constant := 100_000;
-   Joint_Z_Position_Control_Budget : constant := 150_000;
+   Joint_X_Ports_Wcet : constant := 100_000;
+   Joint_X_Monitoring_Wcet : constant := 100_000;
+   Joint_X_Position_Control_Wcet : constant := 150_000;
+   Joint_Y_Ports_Wcet : constant := 100_000;
+   Joint_Y_Monitoring_Wcet : constant := 100_000;
+   Joint_Y_Position_Control_Wcet : constant := 150_000;
+   Joint_Z_Ports_Wcet : constant := 100_000;
+   Joint_Z_Monitoring_Wcet : constant := 100_000;
+   Joint_Z_Position_Control_Wcet : constant := 150_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
    Control_Divisor : constant := 1;
@@ -104,24 +104,24 @@ is
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
-     Joint_X_Ports_Budget + Joint_X_Monitoring_Budget
-     + Joint_X_Position_Control_Budget + Joint_Y_Ports_Budget
-     + Joint_Y_Monitoring_Budget + Joint_Y_Position_Control_Budget
-     + Joint_Z_Ports_Budget + Joint_Z_Monitoring_Budget
-     + Joint_Z_Position_Control_Budget + 2 * Controller_Context_Switch;
+     Joint_X_Ports_Wcet + Joint_X_Monitoring_Wcet
+     + Joint_X_Position_Control_Wcet + Joint_Y_Ports_Wcet
+     + Joint_Y_Monitoring_Wcet + Joint_Y_Position_Control_Wcet
+     + Joint_Z_Ports_Wcet + Joint_Z_Monitoring_Wcet
+     + Joint_Z_Position_Control_Wcet + 2 * Controller_Context_Switch;
    Control_B : constant := Controller_Critical_Section;
 
    --  [supervision] released every T. B: main in coordinator.Mission.queue.
    Supervision_Priority : constant := System.Default_Priority + 1;
-   Coordinator_Ports_Budget : constant := 100_000;
-   Coordinator_Mission_Budget : constant := 200_000;
-   Joint_X_Motion_Budget : constant := 150_000;
-   Joint_Y_Motion_Budget : constant := 150_000;
-   Joint_Z_Motion_Budget : constant := 150_000;
-   Joint_X_Supervise_Budget : constant := 100_000;
-   Joint_Y_Supervise_Budget : constant := 100_000;
-   Joint_Z_Supervise_Budget : constant := 100_000;
-   Coordinator_Summarise_Budget : constant := 100_000;
+   Coordinator_Ports_Wcet : constant := 100_000;
+   Coordinator_Mission_Wcet : constant := 200_000;
+   Joint_X_Motion_Wcet : constant := 150_000;
+   Joint_Y_Motion_Wcet : constant := 150_000;
+   Joint_Z_Motion_Wcet : constant := 150_000;
+   Joint_X_Supervise_Wcet : constant := 100_000;
+   Joint_Y_Supervise_Wcet : constant := 100_000;
+   Joint_Z_Supervise_Wcet : constant := 100_000;
+   Coordinator_Summarise_Wcet : constant := 100_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_Divisor : constant := 1;
@@ -131,123 +131,121 @@ is
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=
-     Coordinator_Ports_Budget + Coordinator_Mission_Budget
-     + Joint_X_Motion_Budget + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget + Joint_Y_Supervise_Budget
-     + Joint_Z_Supervise_Budget + Coordinator_Summarise_Budget
-     + 2 * Controller_Context_Switch;
+     Coordinator_Ports_Wcet + Coordinator_Mission_Wcet + Joint_X_Motion_Wcet
+     + Joint_Y_Motion_Wcet + Joint_Z_Motion_Wcet + Joint_X_Supervise_Wcet
+     + Joint_Y_Supervise_Wcet + Joint_Z_Supervise_Wcet
+     + Coordinator_Summarise_Wcet + 2 * Controller_Context_Switch;
    Supervision_B : constant := Controller_Critical_Section;
 
    --  [robot_bus.driver_rx.robot_command] the driver, released by
    --  robot_bus.robot_command. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Robot_Command_Budget : constant := 40_000;
+   Robot_Bus_Driver_Rx_Robot_Command_Wcet : constant := 40_000;
    Robot_Bus_Driver_Rx_Robot_Command_T : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_D : constant := 100_000_000;
    Robot_Bus_Driver_Rx_Robot_Command_J : constant :=
      Robot_Bus_Robot_Command_R;
    Robot_Bus_Driver_Rx_Robot_Command_C : constant :=
-     Robot_Bus_Driver_Rx_Robot_Command_Budget
-     + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Rx_Robot_Command_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Robot_Command_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_tx.robot_status] the driver, released by
    --  supervision. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Robot_Status_Budget : constant := 40_000;
+   Robot_Bus_Driver_Tx_Robot_Status_Wcet : constant := 40_000;
    Robot_Bus_Driver_Tx_Robot_Status_T : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_D : constant := 20_000_000;
    Robot_Bus_Driver_Tx_Robot_Status_J : constant := Supervision_R;
    Robot_Bus_Driver_Tx_Robot_Status_C : constant :=
-     Robot_Bus_Driver_Tx_Robot_Status_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Tx_Robot_Status_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Robot_Status_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_tx.x_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_X_Set_Point_Budget : constant := 40_000;
+   Robot_Bus_Driver_Tx_X_Set_Point_Wcet : constant := 40_000;
    Robot_Bus_Driver_Tx_X_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_X_Set_Point_J : constant := Control_R;
    Robot_Bus_Driver_Tx_X_Set_Point_C : constant :=
-     Robot_Bus_Driver_Tx_X_Set_Point_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Tx_X_Set_Point_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_X_Set_Point_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_tx.y_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Y_Set_Point_Budget : constant := 40_000;
+   Robot_Bus_Driver_Tx_Y_Set_Point_Wcet : constant := 40_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Y_Set_Point_J : constant := Control_R;
    Robot_Bus_Driver_Tx_Y_Set_Point_C : constant :=
-     Robot_Bus_Driver_Tx_Y_Set_Point_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Tx_Y_Set_Point_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Y_Set_Point_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_tx.z_set_point] the driver, released by control. B:
    --  supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Tx_Z_Set_Point_Budget : constant := 40_000;
+   Robot_Bus_Driver_Tx_Z_Set_Point_Wcet : constant := 40_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_T : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_D : constant := 10_000_000;
    Robot_Bus_Driver_Tx_Z_Set_Point_J : constant := Control_R;
    Robot_Bus_Driver_Tx_Z_Set_Point_C : constant :=
-     Robot_Bus_Driver_Tx_Z_Set_Point_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Tx_Z_Set_Point_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Tx_Z_Set_Point_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_rx.x_feedback] the driver, released by
    --  robot_bus.x_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_X_Feedback_Budget : constant := 40_000;
+   Robot_Bus_Driver_Rx_X_Feedback_Wcet : constant := 40_000;
    Robot_Bus_Driver_Rx_X_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_X_Feedback_J : constant := Robot_Bus_X_Feedback_R;
    Robot_Bus_Driver_Rx_X_Feedback_C : constant :=
-     Robot_Bus_Driver_Rx_X_Feedback_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Rx_X_Feedback_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_X_Feedback_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_rx.y_feedback] the driver, released by
    --  robot_bus.y_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Y_Feedback_Budget : constant := 40_000;
+   Robot_Bus_Driver_Rx_Y_Feedback_Wcet : constant := 40_000;
    Robot_Bus_Driver_Rx_Y_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Y_Feedback_J : constant := Robot_Bus_Y_Feedback_R;
    Robot_Bus_Driver_Rx_Y_Feedback_C : constant :=
-     Robot_Bus_Driver_Rx_Y_Feedback_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Rx_Y_Feedback_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Y_Feedback_B : constant :=
      Controller_Critical_Section;
 
    --  [robot_bus.driver_rx.z_feedback] the driver, released by
    --  robot_bus.z_feedback. B: supervision in coordinator.Mission.queue.
-   Robot_Bus_Driver_Rx_Z_Feedback_Budget : constant := 40_000;
+   Robot_Bus_Driver_Rx_Z_Feedback_Wcet : constant := 40_000;
    Robot_Bus_Driver_Rx_Z_Feedback_T : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_D : constant := 5_000_000;
    Robot_Bus_Driver_Rx_Z_Feedback_J : constant := Robot_Bus_Z_Feedback_R;
    Robot_Bus_Driver_Rx_Z_Feedback_C : constant :=
-     Robot_Bus_Driver_Rx_Z_Feedback_Budget + 2 * Controller_Context_Switch;
+     Robot_Bus_Driver_Rx_Z_Feedback_Wcet + 2 * Controller_Context_Switch;
    Robot_Bus_Driver_Rx_Z_Feedback_B : constant :=
      Controller_Critical_Section;
 
    --  [controller.supervisor] released every T. B: supervision in
    --  coordinator.Mission.queue.
    Controller_Supervisor_Priority : constant := System.Default_Priority + 6;
-   Controller_Supervisor_Budget : constant := 50_000;
+   Controller_Supervisor_Wcet : constant := 50_000;
    Controller_Supervisor_T : constant := 10_000_000;
    Controller_Supervisor_D : constant := 10_000_000;
    Controller_Supervisor_J : constant := 0;
    Controller_Supervisor_C : constant :=
-     Controller_Supervisor_Budget + 2 * Controller_Context_Switch;
+     Controller_Supervisor_Wcet + 2 * Controller_Context_Switch;
    Controller_Supervisor_B : constant := Controller_Critical_Section;
 
    --  [controller.probe] released every T. B: main in
    --  controller.probe.board.
    Controller_Probe_Priority : constant := System.Default_Priority + 7;
-   Controller_Probe_Budget : constant := 20_000;
+   Controller_Probe_Wcet : constant := 20_000;
    Controller_Probe_T : constant := 1_000_000;
    Controller_Probe_D : constant := 1_000_000;
    Controller_Probe_J : constant := 0;
    Controller_Probe_C : constant :=
-     Controller_Probe_Budget + 2 * Controller_Context_Switch;
+     Controller_Probe_Wcet + 2 * Controller_Context_Switch;
    Controller_Probe_B : constant := Controller_Critical_Section;
 
    function Controller_Probe_Up (W : Window) return Time is
@@ -495,7 +493,7 @@ is
    Joint_X_Ports_Done : constant := 975_000;
    Joint_X_Ports_W : constant := Joint_X_Ports_Done - Control_J;
    Joint_X_Ports_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget + Control_B
+     2 * Controller_Context_Switch + Joint_X_Ports_Wcet + Control_B
      + Trajectory_Up (Joint_X_Ports_W);
    pragma Compile_Time_Error (Joint_X_Ports_W /= Joint_X_Ports_Needs,
       "joint_x.ports claims a wrong response time");
@@ -505,9 +503,9 @@ is
    Joint_X_Position_Control_W : constant :=
      Joint_X_Position_Control_Done - Control_J;
    Joint_X_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
-     + Control_B + Trajectory_Up (Joint_X_Position_Control_W);
+     2 * Controller_Context_Switch + Joint_X_Ports_Wcet
+     + Joint_X_Monitoring_Wcet + Joint_X_Position_Control_Wcet + Control_B
+     + Trajectory_Up (Joint_X_Position_Control_W);
    pragma Compile_Time_Error
      (Joint_X_Position_Control_W /= Joint_X_Position_Control_Needs,
       "joint_x.position_control claims a wrong response time");
@@ -516,9 +514,9 @@ is
    Joint_Y_Ports_Done : constant := 1_415_000;
    Joint_Y_Ports_W : constant := Joint_Y_Ports_Done - Control_J;
    Joint_Y_Ports_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget + Control_B + Trajectory_Up (Joint_Y_Ports_W);
+     2 * Controller_Context_Switch + Joint_X_Ports_Wcet
+     + Joint_X_Monitoring_Wcet + Joint_X_Position_Control_Wcet
+     + Joint_Y_Ports_Wcet + Control_B + Trajectory_Up (Joint_Y_Ports_W);
    pragma Compile_Time_Error (Joint_Y_Ports_W /= Joint_Y_Ports_Needs,
       "joint_y.ports claims a wrong response time");
 
@@ -527,10 +525,10 @@ is
    Joint_Y_Position_Control_W : constant :=
      Joint_Y_Position_Control_Done - Control_J;
    Joint_Y_Position_Control_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget + Control_B
+     2 * Controller_Context_Switch + Joint_X_Ports_Wcet
+     + Joint_X_Monitoring_Wcet + Joint_X_Position_Control_Wcet
+     + Joint_Y_Ports_Wcet + Joint_Y_Monitoring_Wcet
+     + Joint_Y_Position_Control_Wcet + Control_B
      + Trajectory_Up (Joint_Y_Position_Control_W);
    pragma Compile_Time_Error
      (Joint_Y_Position_Control_W /= Joint_Y_Position_Control_Needs,
@@ -540,10 +538,10 @@ is
    Joint_Z_Ports_Done : constant := 1_765_000;
    Joint_Z_Ports_W : constant := Joint_Z_Ports_Done - Control_J;
    Joint_Z_Ports_Needs : constant :=
-     2 * Controller_Context_Switch + Joint_X_Ports_Budget
-     + Joint_X_Monitoring_Budget + Joint_X_Position_Control_Budget
-     + Joint_Y_Ports_Budget + Joint_Y_Monitoring_Budget
-     + Joint_Y_Position_Control_Budget + Joint_Z_Ports_Budget + Control_B
+     2 * Controller_Context_Switch + Joint_X_Ports_Wcet
+     + Joint_X_Monitoring_Wcet + Joint_X_Position_Control_Wcet
+     + Joint_Y_Ports_Wcet + Joint_Y_Monitoring_Wcet
+     + Joint_Y_Position_Control_Wcet + Joint_Z_Ports_Wcet + Control_B
      + Trajectory_Up (Joint_Z_Ports_W);
    pragma Compile_Time_Error (Joint_Z_Ports_W /= Joint_Z_Ports_Needs,
       "joint_z.ports claims a wrong response time");
@@ -568,8 +566,8 @@ is
    Coordinator_Ports_Done : constant := 2_215_000;
    Coordinator_Ports_W : constant := Coordinator_Ports_Done - Supervision_J;
    Coordinator_Ports_Needs : constant :=
-     2 * Controller_Context_Switch + Coordinator_Ports_Budget
-     + Supervision_B + Control_Up (Coordinator_Ports_W);
+     2 * Controller_Context_Switch + Coordinator_Ports_Wcet + Supervision_B
+     + Control_Up (Coordinator_Ports_W);
    pragma Compile_Time_Error
      (Coordinator_Ports_W /= Coordinator_Ports_Needs,
       "coordinator.ports claims a wrong response time");
@@ -578,10 +576,9 @@ is
    Joint_X_Supervise_Done : constant := 2_965_000;
    Joint_X_Supervise_W : constant := Joint_X_Supervise_Done - Supervision_J;
    Joint_X_Supervise_Needs : constant :=
-     2 * Controller_Context_Switch + Coordinator_Ports_Budget
-     + Coordinator_Mission_Budget + Joint_X_Motion_Budget
-     + Joint_Y_Motion_Budget + Joint_Z_Motion_Budget
-     + Joint_X_Supervise_Budget + Supervision_B
+     2 * Controller_Context_Switch + Coordinator_Ports_Wcet
+     + Coordinator_Mission_Wcet + Joint_X_Motion_Wcet + Joint_Y_Motion_Wcet
+     + Joint_Z_Motion_Wcet + Joint_X_Supervise_Wcet + Supervision_B
      + Control_Up (Joint_X_Supervise_W);
    pragma Compile_Time_Error
      (Joint_X_Supervise_W /= Joint_X_Supervise_Needs,

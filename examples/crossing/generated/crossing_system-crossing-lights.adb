@@ -5,39 +5,92 @@
 package body Crossing_System.Crossing.Lights
 with SPARK_Mode
 is
-   function Selected
-     (First : Transition;
-      Last  : Transition;
-      Self  : Region;
-      Now   : Occurrence;
-      Item  : Event) return Selection
-   with Post => Is_Selection (Selected'Result, First, Last, Self, Now, Item)
+   function Selected_Cars
+     (Self : Region; Now : Occurrence; Item : Event) return Selection
+   with
+     Post =>
+       Is_Selection (Selected_Cars'Result, Cars_Transition'First,
+          Cars_Transition'Last, Self, Now, Item)
    is
    begin
-      for T in Transition range First .. Last loop
-         if Enabled (T, Self, Now, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in First .. T => not Enabled (J, Self, Now, Item)));
-      end loop;
-      return None;
-   end Selected;
+      case Now is
+         when Expiry_Of_Stopped =>
+            return
+              (if Enabled (Stopped, Self, Now, Item) then Stopped else None);
+         when Expiry_Of_Start =>
+            return
+              (if Enabled (Start, Self, Now, Item) then Start else None);
+         when Expiry_Of_Long_Enough =>
+            return
+              (if Enabled (Long_Enough, Self, Now, Item) then Long_Enough
+               else None);
+         when Expiry_Of_Stop =>
+            return (if Enabled (Stop, Self, Now, Item) then Stop else None);
+         when Conditions =>
+            return
+              (if Enabled (Get_Ready, Self, Now, Item) then Get_Ready
+               elsif Enabled (Slow_Down, Self, Now, Item) then Slow_Down
+               else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Cars;
+
+   function Selected_Walkers
+     (Self : Region; Now : Occurrence; Item : Event) return Selection
+   with
+     Post =>
+       Is_Selection (Selected_Walkers'Result, Walkers_Transition'First,
+          Walkers_Transition'Last, Self, Now, Item)
+   is
+   begin
+      case Now is
+         when On_Wish =>
+            return (if Enabled (Ask, Self, Now, Item) then Ask else None);
+         when Expiry_Of_Last_Call =>
+            return
+              (if Enabled (Last_Call, Self, Now, Item) then Last_Call
+               else None);
+         when Expiry_Of_Gone =>
+            return (if Enabled (Gone, Self, Now, Item) then Gone else None);
+         when Conditions =>
+            return (if Enabled (Walk, Self, Now, Item) then Walk else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Walkers;
+
+   function Selected_Top
+     (Self : Region; Now : Occurrence; Item : Event) return Selection
+   with
+     Post =>
+       Is_Selection (Selected_Top'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Item)
+   is
+   begin
+      case Now is
+         when On_Ordered =>
+            return
+              (if Enabled (Into_Service, Self, Now, Item) then Into_Service
+               elsif Enabled (Out_Of_Service, Self, Now, Item)
+                  then Out_Of_Service
+               else None);
+         when Expiry_Of_Blink =>
+            return
+              (if Enabled (Blink, Self, Now, Item) then Blink else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Top;
 
    function Choose
      (Self : Region; Now : Occurrence; Item : Event) return Choice is
       C : Choice;
    begin
-      C.Cars :=
-        Selected (Cars_Transition'First, Cars_Transition'Last, Self, Now,
-           Item);
-      C.Walkers :=
-        Selected (Walkers_Transition'First, Walkers_Transition'Last, Self,
-           Now, Item);
+      C.Cars := Selected_Cars (Self, Now, Item);
+      C.Walkers := Selected_Walkers (Self, Now, Item);
       if C.Cars = None and then C.Walkers = None then
-         C.Top :=
-           Selected (Top_Transition'First, Top_Transition'Last, Self, Now,
-              Item);
+         C.Top := Selected_Top (Self, Now, Item);
       end if;
       return C;
    end Choose;
@@ -58,19 +111,23 @@ is
 
       function Innermost (Self : Region) return Nodes is
         ((Cars =>
-            (if Self.Started and then Self.Place.Top = Lights_States.Working
+            (if Self.Started
+                and then Self.Configuration.Top = Lights_States.Working
                 then Node'Val
-                     (Lights_States.Cars_Leaf'Pos (Self.Place.In_Cars) + 1)
+                     (Lights_States.Cars_Leaf'Pos
+                        (Self.Configuration.In_Cars) + 1)
              else Nowhere),
           Walkers =>
-            (if Self.Started and then Self.Place.Top = Lights_States.Working
+            (if Self.Started
+                and then Self.Configuration.Top = Lights_States.Working
                 then Node'Val
-                     (Lights_States.Walkers_Leaf'Pos (Self.Place.In_Walkers)
-                      + 7)
+                     (Lights_States.Walkers_Leaf'Pos
+                        (Self.Configuration.In_Walkers) + 7)
              else Nowhere),
           Top =>
             (if Self.Started
-                then Node'Val (Lights_States.Leaf'Pos (Self.Place.Top) + 11)
+                then Node'Val
+                     (Lights_States.Leaf'Pos (Self.Configuration.Top) + 11)
              else Nowhere)));
    end Chart;
 
@@ -112,8 +169,8 @@ is
      (if Chosen = Initial_Entry
          then not Self.Started and then Self.Data = Initial_Data
       else Self.Started
-         and then In_Source (Chosen, Self.Place)
-         and then Is_Safe (Self.Place, Self.Data)
+         and then In_Source (Chosen, Self.Configuration)
+         and then Is_Safe (Self.Configuration, Self.Data)
          and then Guards_Hold (Chosen, Self.Data, Item)) with Ghost;
    --  May it be fired? At first only the start may.
 
@@ -122,14 +179,14 @@ is
    function Is_Lasting
      (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Timers
-      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Place,
-           Self.Place)) with Ghost;
+      = Timers_After (Before.Timers, Domain_Of (Chosen),
+           Before.Configuration, Self.Configuration)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
      (Before : Region; Self : Region; Chosen : Firing) return Boolean is
      (Self.Started
-      and then Self.Place = Target (Chosen, Before.Place)
+      and then Self.Configuration = Target (Chosen, Before.Configuration)
       and then Is_Lasting (Before, Self, Chosen)) with Ghost;
    --  Is the region after it as declared?
 
@@ -140,14 +197,14 @@ is
      Pre => Is_Ready (Self, Item, Chosen),
      Post =>
        Is_Fired (Self'Old, Self, Chosen)
-       and then Is_Safe (Self.Place, Self.Data)
+       and then Is_Safe (Self.Configuration, Self.Data)
    is
       use type Chart.Nodes;
       use type Chart.Node;
 
       Active : Chart.Nodes := Chart.Innermost (Self) with Ghost;
       Active_At_First : constant Chart.Nodes := Active with Ghost;
-      Before : constant Lights_States.Configuration := Self.Place;
+      Before : constant Lights_States.Configuration := Self.Configuration;
 
       function Moved
         (Active_Node : Chart.Node;
@@ -311,9 +368,10 @@ is
       end Enter_Leaving;
    begin
       Self.Started := True;
-      Self.Place := Target (Chosen, Before);
+      Self.Configuration := Target (Chosen, Before);
       Self.Timers :=
-        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Place);
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before,
+           Self.Configuration);
       case Chosen is
          when Initial_Entry =>
             Enter_Blinking;
@@ -399,8 +457,8 @@ is
         Post =>
           Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Self.Place = Target (T, Self.Place'Old)
-          and then Is_Safe (Self.Place, Self.Data)
+          and then Self.Configuration = Target (T, Self.Configuration'Old)
+          and then Is_Safe (Self.Configuration, Self.Data)
       is
       begin
          Fire (Self, Item, T);

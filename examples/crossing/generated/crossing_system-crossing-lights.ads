@@ -56,6 +56,81 @@ is
       Top     : Selection := None;
    end record;
 
+   function In_Source
+     (T : Transition; Configuration : Lights_States.Configuration)
+     return Boolean is
+     (case T is
+        when Stopped =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Stopping,
+        when Get_Ready =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Held,
+        when Long_Enough =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Least,
+        when Slow_Down =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Longer,
+        when Start =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Red_Yellow,
+        when Stop =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Cars = Lights_States.Yellow,
+        when Ask =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Walkers = Lights_States.Nobody,
+        when Walk =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Walkers = Lights_States.Waiting,
+        when Last_Call =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Walkers = Lights_States.Walking,
+        when Gone =>
+           Configuration.Top = Lights_States.Working
+           and then Configuration.In_Walkers in Lights_States.On_The_Road,
+        when Into_Service | Blink =>
+           Configuration.Top = Lights_States.Blinking,
+        when Out_Of_Service => Configuration.Top = Lights_States.Working)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Configuration : Lights_States.Configuration)
+     return Lights_States.Configuration is
+     (case T is
+        when Initial_Entry | Out_Of_Service =>
+           (Configuration with delta Top => Lights_States.Blinking),
+        when Stopped =>
+           (Configuration with delta In_Cars => Lights_States.Held),
+        when Get_Ready =>
+           (Configuration with delta In_Cars => Lights_States.Red_Yellow),
+        when Long_Enough =>
+           (Configuration with delta In_Cars => Lights_States.Longer),
+        when Slow_Down =>
+           (Configuration with delta In_Cars => Lights_States.Yellow),
+        when Start =>
+           (Configuration with delta In_Cars => Lights_States.Least),
+        when Stop =>
+           (Configuration with delta In_Cars => Lights_States.Stopping),
+        when Ask =>
+           (Configuration with delta In_Walkers => Lights_States.Waiting),
+        when Walk =>
+           (Configuration with delta In_Walkers => Lights_States.Walking),
+        when Last_Call =>
+           (Configuration with delta In_Walkers => Lights_States.Leaving),
+        when Gone =>
+           (Configuration with delta In_Walkers => Lights_States.Nobody),
+        when Into_Service =>
+           (Top => Lights_States.Working,
+            In_Walkers => Lights_States.Nobody,
+            In_Cars => Lights_States.Stopping),
+        when Blink => Configuration);
+   --  The leaves that each transition leads to; those of a composite are
+   --  its defaults.
+
    --  The data that this region alone writes.
    type Variables is record
       Cars_See     : Crossing_System.Car_Light := Crossing_System.Dark;
@@ -89,10 +164,10 @@ is
 
    --  The region's own state.
    type Region is record
-      Started : Boolean := False;
-      Place   : Lights_States.Configuration;
-      Timers  : Time_Outs;
-      Data    : Variables;
+      Started       : Boolean := False;
+      Configuration : Lights_States.Configuration;
+      Timers        : Time_Outs;
+      Data          : Variables;
    end record;
 
    function Is_Segment (T : Selection) return Boolean is (T = None);
@@ -105,48 +180,10 @@ is
       Most_Segments => 0,
       Capacity => 3);
 
-   function In_Source
-     (T : Transition; Place : Lights_States.Configuration) return Boolean is
-     (case T is
-        when Stopped =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Stopping,
-        when Get_Ready =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Held,
-        when Long_Enough =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Least,
-        when Slow_Down =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Longer,
-        when Start =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Red_Yellow,
-        when Stop =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Cars = Lights_States.Yellow,
-        when Ask =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Nobody,
-        when Walk =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Waiting,
-        when Last_Call =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers = Lights_States.Walking,
-        when Gone =>
-           Place.Top = Lights_States.Working
-           and then Place.In_Walkers in Lights_States.On_The_Road,
-        when Into_Service | Blink => Place.Top = Lights_States.Blinking,
-        when Out_Of_Service => Place.Top = Lights_States.Working);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Item : Event)
      return Boolean is
-     (In_Source (T, Self.Place)
+     (In_Source (T, Self.Configuration)
       and then (case T is
            when Stopped => Now = Expiry_Of_Stopped,
            when Get_Ready =>
@@ -167,34 +204,8 @@ is
            when Out_Of_Service =>
               Now = On_Ordered
               and then Item.Value_Order = Crossing_System.Blink,
-           when Blink => Now = Expiry_Of_Blink));
+           when Blink => Now = Expiry_Of_Blink)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Place : Lights_States.Configuration)
-     return Lights_States.Configuration is
-     (case T is
-        when Initial_Entry | Out_Of_Service =>
-           (Place with delta Top => Lights_States.Blinking),
-        when Stopped => (Place with delta In_Cars => Lights_States.Held),
-        when Get_Ready =>
-           (Place with delta In_Cars => Lights_States.Red_Yellow),
-        when Long_Enough =>
-           (Place with delta In_Cars => Lights_States.Longer),
-        when Slow_Down => (Place with delta In_Cars => Lights_States.Yellow),
-        when Start => (Place with delta In_Cars => Lights_States.Least),
-        when Stop => (Place with delta In_Cars => Lights_States.Stopping),
-        when Ask => (Place with delta In_Walkers => Lights_States.Waiting),
-        when Walk => (Place with delta In_Walkers => Lights_States.Walking),
-        when Last_Call =>
-           (Place with delta In_Walkers => Lights_States.Leaving),
-        when Gone => (Place with delta In_Walkers => Lights_States.Nobody),
-        when Into_Service =>
-           (Top => Lights_States.Working,
-            In_Walkers => Lights_States.Nobody,
-            In_Cars => Lights_States.Stopping),
-        when Blink => Place);
-   --  The leaves it leads to; those of a composite are its defaults.
 
    function Timers_After
      (Timers : Time_Outs;
@@ -325,73 +336,79 @@ is
    --  [Crossing.green_for_both] the condition of `never` is false.
 
    function Never_Walkers_Among_Cars
-     (Place : Lights_States.Configuration) return Boolean is
-     (not ((Place.Top = Lights_States.Working
-        and then Place.In_Walkers in Lights_States.On_The_Road)
-       and then not (Place.Top = Lights_States.Working
-          and then Place.In_Cars = Lights_States.Held)));
+     (Configuration : Lights_States.Configuration) return Boolean is
+     (not ((Configuration.Top = Lights_States.Working
+        and then Configuration.In_Walkers in Lights_States.On_The_Road)
+       and then not (Configuration.Top = Lights_States.Working
+          and then Configuration.In_Cars = Lights_States.Held)));
    --  [Crossing.walkers_among_cars] the condition of `never` is false.
 
    function Never_Road_Forgotten
-     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
-     (not ((Place.Top = Lights_States.Working
-        and then Place.In_Walkers in Lights_States.On_The_Road)
+     (Configuration : Lights_States.Configuration; Data : Variables)
+     return Boolean is
+     (not ((Configuration.Top = Lights_States.Working
+        and then Configuration.In_Walkers in Lights_States.On_The_Road)
        and then Data.Road_Free));
    --  [Crossing.road_forgotten] the condition of `never` is false.
 
    function Never_Request_Forgotten
-     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
-     (not ((Place.Top = Lights_States.Working
-        and then Place.In_Walkers = Lights_States.Waiting)
+     (Configuration : Lights_States.Configuration; Data : Variables)
+     return Boolean is
+     (not ((Configuration.Top = Lights_States.Working
+        and then Configuration.In_Walkers = Lights_States.Waiting)
        and then not Data.Requested));
    --  [Crossing.request_forgotten] the condition of `never` is false.
 
    function Data_Are_Known
-     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
-     ((if Place.Top = Lights_States.Blinking then not Data.Cars_Stopped)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Stopping
+     (Configuration : Lights_States.Configuration; Data : Variables)
+     return Boolean is
+     ((if Configuration.Top = Lights_States.Blinking
+          then not Data.Cars_Stopped)
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Stopping
             then Data.Cars_See = Crossing_System.Stop
                and then not Data.Cars_Stopped)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Held
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Held
             then Data.Cars_See = Crossing_System.Stop)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Red_Yellow
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Red_Yellow
             then Data.Cars_See = Crossing_System.Ready
                and then not Data.Cars_Stopped
                and then Data.Walkers_See = Crossing_System.Wait)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Least
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Least
             then not Data.Cars_Stopped)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Longer
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Longer
             then not Data.Cars_Stopped)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Cars = Lights_States.Yellow
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Cars = Lights_States.Yellow
             then Data.Cars_See = Crossing_System.Slow
                and then not Data.Cars_Stopped)
-      and then (if Place.Top = Lights_States.Working
-            and then Place.In_Walkers = Lights_States.Nobody
+      and then (if Configuration.Top = Lights_States.Working
+            and then Configuration.In_Walkers = Lights_States.Nobody
             then Data.Walkers_See = Crossing_System.Wait));
    --  What holds of data while a leaf is active: without it a transition
    --  might break an invariant.
 
    function Is_Safe
-     (Place : Lights_States.Configuration; Data : Variables) return Boolean is
+     (Configuration : Lights_States.Configuration; Data : Variables)
+     return Boolean is
      (Never_Green_For_Both (Data)
-      and then Never_Walkers_Among_Cars (Place)
-      and then Never_Road_Forgotten (Place, Data)
-      and then Never_Request_Forgotten (Place, Data)
-      and then Data_Are_Known (Place, Data));
+      and then Never_Walkers_Among_Cars (Configuration)
+      and then Never_Road_Forgotten (Configuration, Data)
+      and then Never_Request_Forgotten (Configuration, Data)
+      and then Data_Are_Known (Configuration, Data));
    --  Each transition and each segment keeps it.
 
    function Is_Kept (Self : Region) return Boolean is
      (Never_Green_For_Both (Self.Data)
-      and then Never_Walkers_Among_Cars (Self.Place)
-      and then Never_Road_Forgotten (Self.Place, Self.Data)
-      and then Never_Request_Forgotten (Self.Place, Self.Data)
-      and then (if Self.Started then Data_Are_Known (Self.Place, Self.Data)
+      and then Never_Walkers_Among_Cars (Self.Configuration)
+      and then Never_Road_Forgotten (Self.Configuration, Self.Data)
+      and then Never_Request_Forgotten (Self.Configuration, Self.Data)
+      and then (if Self.Started
+            then Data_Are_Known (Self.Configuration, Self.Data)
          else Self.Data = Initial_Data));
    --  The region between steps; before the first one its data are initial.
 
@@ -412,7 +429,7 @@ is
    procedure Tick (Self : in out Region)
    with
      Post =>
-       (Self.Place = Self.Place'Old
+       (Self.Configuration = Self.Configuration'Old
         and then Self.Started = Self.Started'Old
         and then Self.Data = Self.Data'Old)
        and then (for all I in Self.Timers'Range =>
@@ -428,7 +445,7 @@ is
    procedure Poll (Self : in out Region; Now : out Occurrence)
    with
      Post =>
-       (Self.Place = Self.Place'Old
+       (Self.Configuration = Self.Configuration'Old
         and then Self.Started = Self.Started'Old
         and then Self.Data = Self.Data'Old)
        and then (case Now is
@@ -467,7 +484,8 @@ is
      Post =>
        Self.Started
        and then Is_Kept (Self)
-       and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
+       and then (if Fired.Count = 0
+             then Self.Configuration = Self.Configuration'Old)
        and then ((Now = Start_Of_Region
            and Firings.Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region

@@ -112,16 +112,10 @@ is
 
    procedure Offer (Item : Crossing.Event) is
    begin
-      case Item.Name is
-         when Crossing.Wish =>
-            Lights_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.School_Wish, 0);
-         when Crossing.Ordered =>
-            Lights_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.School_Ordered, 0);
-      end case;
+      Lights_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.School_Wish
+         + Ravenchart.Element_Id (Crossing.Event_Name'Pos (Item.Name)), 0);
    end Offer;
 
    procedure Read_Lights_Fill (Found : out Ravenchart.Queueing.Fill) is
@@ -231,18 +225,21 @@ is
             end if;
          end loop;
          Trace.Buffer.Note (Ravenchart.Traces.State, Elements.School_Lights,
-            Crossing.Lights_States.Leaf'Pos (Lights_Region.Place.Top));
-         if Lights_Region.Place.Top = Crossing.Lights_States.Working then
+            Crossing.Lights_States.Leaf'Pos
+              (Lights_Region.Configuration.Top));
+         if Lights_Region.Configuration.Top = Crossing.Lights_States.Working
+         then
             Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.School_Lights_Walkers,
                Crossing.Lights_States.Walkers_Leaf'Pos
-                 (Lights_Region.Place.In_Walkers));
+                 (Lights_Region.Configuration.In_Walkers));
          end if;
-         if Lights_Region.Place.Top = Crossing.Lights_States.Working then
+         if Lights_Region.Configuration.Top = Crossing.Lights_States.Working
+         then
             Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.School_Lights_Cars,
                Crossing.Lights_States.Cars_Leaf'Pos
-                 (Lights_Region.Place.In_Cars));
+                 (Lights_Region.Configuration.In_Cars));
          end if;
       end if;
    end Step_Lights;
@@ -251,7 +248,7 @@ is
    begin
       Crossing.Lights.Tick (Lights_Region);
       Step_Lights;
-      Lights_Board.Write (Lights_Region.Place);
+      Lights_Board.Write (Lights_Region.Configuration);
       Cars_See_Board.Write (Lights_Region.Data.Cars_See);
       Walkers_See_Board.Write (Lights_Region.Data.Walkers_See);
       Requested_Board.Write (Lights_Region.Data.Requested);

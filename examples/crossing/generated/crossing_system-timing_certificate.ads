@@ -47,19 +47,18 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in school.button.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
-   Street_Receive_Budget : constant := 20_000;
+   Street_Receive_Wcet : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_C : constant :=
-     Street_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Street_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
-   School_Ports_Budget : constant := 100_000;
-   School_Lights_Budget : constant := 200_000;
-   School_Show_Budget : constant := 100_000;
+   School_Ports_Wcet : constant := 100_000;
+   School_Lights_Wcet : constant := 200_000;
+   School_Show_Wcet : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
    Control_Divisor : constant := 1;
@@ -69,58 +68,58 @@ is
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
-     School_Ports_Budget + School_Lights_Budget + School_Show_Budget
+     School_Ports_Wcet + School_Lights_Wcet + School_Show_Wcet
      + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
    --  [street.driver_rx.order] the driver, released by street.order. B:
    --  control in street.transmit.
-   Street_Driver_Rx_Order_Budget : constant := 20_000;
+   Street_Driver_Rx_Order_Wcet : constant := 20_000;
    Street_Driver_Rx_Order_T : constant := 1_000_000_000;
    Street_Driver_Rx_Order_D : constant := 1_000_000_000;
    Street_Driver_Rx_Order_J : constant := Street_Order_R;
    Street_Driver_Rx_Order_C : constant :=
-     Street_Driver_Rx_Order_Budget + 2 * Board_Context_Switch;
+     Street_Driver_Rx_Order_Wcet + 2 * Board_Context_Switch;
    Street_Driver_Rx_Order_B : constant := Board_Critical_Section;
 
    --  [street.driver_rx.button] the driver, released by street.button. B:
    --  control in street.transmit.
-   Street_Driver_Rx_Button_Budget : constant := 20_000;
+   Street_Driver_Rx_Button_Wcet : constant := 20_000;
    Street_Driver_Rx_Button_T : constant := 50_000_000;
    Street_Driver_Rx_Button_D : constant := 50_000_000;
    Street_Driver_Rx_Button_J : constant := Street_Button_R;
    Street_Driver_Rx_Button_C : constant :=
-     Street_Driver_Rx_Button_Budget + 2 * Board_Context_Switch;
+     Street_Driver_Rx_Button_Wcet + 2 * Board_Context_Switch;
    Street_Driver_Rx_Button_B : constant := Board_Critical_Section;
 
    --  [street.driver_tx.car_lamp] the driver, released by control. B:
    --  control in street.transmit.
-   Street_Driver_Tx_Car_Lamp_Budget : constant := 20_000;
+   Street_Driver_Tx_Car_Lamp_Wcet : constant := 20_000;
    Street_Driver_Tx_Car_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Car_Lamp_J : constant := Control_R;
    Street_Driver_Tx_Car_Lamp_C : constant :=
-     Street_Driver_Tx_Car_Lamp_Budget + 2 * Board_Context_Switch;
+     Street_Driver_Tx_Car_Lamp_Wcet + 2 * Board_Context_Switch;
    Street_Driver_Tx_Car_Lamp_B : constant := Board_Critical_Section;
 
    --  [street.driver_tx.walk_lamp] the driver, released by control. B:
    --  control in street.transmit.
-   Street_Driver_Tx_Walk_Lamp_Budget : constant := 20_000;
+   Street_Driver_Tx_Walk_Lamp_Wcet : constant := 20_000;
    Street_Driver_Tx_Walk_Lamp_T : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_D : constant := 100_000_000;
    Street_Driver_Tx_Walk_Lamp_J : constant := Control_R;
    Street_Driver_Tx_Walk_Lamp_C : constant :=
-     Street_Driver_Tx_Walk_Lamp_Budget + 2 * Board_Context_Switch;
+     Street_Driver_Tx_Walk_Lamp_Wcet + 2 * Board_Context_Switch;
    Street_Driver_Tx_Walk_Lamp_B : constant := Board_Critical_Section;
 
    --  [street.driver_tx.sign] the driver, released by control. B: control
    --  in street.transmit.
-   Street_Driver_Tx_Sign_Budget : constant := 20_000;
+   Street_Driver_Tx_Sign_Wcet : constant := 20_000;
    Street_Driver_Tx_Sign_T : constant := 100_000_000;
    Street_Driver_Tx_Sign_D : constant := 100_000_000;
    Street_Driver_Tx_Sign_J : constant := Control_R;
    Street_Driver_Tx_Sign_C : constant :=
-     Street_Driver_Tx_Sign_Budget + 2 * Board_Context_Switch;
+     Street_Driver_Tx_Sign_Wcet + 2 * Board_Context_Switch;
    Street_Driver_Tx_Sign_B : constant := Board_Critical_Section;
 
    function Street_Driver_Rx_Order_Up (W : Window) return Time is

@@ -10,15 +10,19 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when Conditions =>
+            return
+              (if Enabled (At_Peak, Self, Now, Ins) then At_Peak
+               elsif Enabled (At_Zero, Self, Now, Ins) then At_Zero
+               elsif Enabled (Start, Self, Now, Ins) then Start
+               elsif Enabled (Trip, Self, Now, Ins) then Trip
+               elsif Enabled (Halt, Self, Now, Ins) then Halt
+               elsif Enabled (Done, Self, Now, Ins) then Done
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -26,6 +26,25 @@ is
    subtype Firing is Selection range Initial_Entry .. Done;
    subtype Transition is Selection range At_Peak .. Done;
 
+   function In_Source
+     (T : Transition; Leaf : Cycle_States.Leaf) return Boolean is
+     (case T is
+        when At_Peak => Leaf = Cycle_States.Pulling,
+        when At_Zero => Leaf = Cycle_States.Releasing,
+        when Start => Leaf = Cycle_States.Resting,
+        when Trip | Halt | Done => Leaf in Cycle_States.Moving)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Cycle_States.Leaf is
+     (case T is
+        when Initial_Entry | Trip | Halt | Done => Cycle_States.Resting,
+        when At_Peak => Cycle_States.Releasing,
+        when At_Zero | Start => Cycle_States.Pulling);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Cycles    : Fatigue_Rig.Cycles := 0;
@@ -49,16 +68,6 @@ is
       Data    : Variables;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Cycle_States.Leaf) return Boolean is
-     (case T is
-        when At_Peak => Leaf = Cycle_States.Pulling,
-        when At_Zero => Leaf = Cycle_States.Releasing,
-        when Start => Leaf = Cycle_States.Resting,
-        when Trip | Halt | Done => Leaf in Cycle_States.Moving);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
@@ -76,15 +85,9 @@ is
            when Halt =>
               Now = Conditions and then Ins.Order.Value = Fatigue_Rig.Halt,
            when Done =>
-              Now = Conditions and then Self.Data.Cycles >= Ins.Planned));
+              Now = Conditions and then Self.Data.Cycles >= Ins.Planned))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Cycle_States.Leaf is
-     (case T is
-        when Initial_Entry | Trip | Halt | Done => Cycle_States.Resting,
-        when At_Peak => Cycle_States.Releasing,
-        when At_Zero | Start => Cycle_States.Pulling);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)

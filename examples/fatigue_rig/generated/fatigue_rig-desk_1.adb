@@ -81,45 +81,37 @@ is
       Ceiling => System.Default_Priority + 1);
 
    procedure Put_Wanted (Item : Fatigue_Rig.Order) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Wanted_Mailbox.Put (Item, Status);
+      Wanted_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Desk_1_Wanted,
          0);
    end Put_Wanted;
 
    procedure Put_First (Item : Fatigue_Rig.Station_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      First_Mailbox.Put (Item, Status);
+      First_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Desk_1_First,
          0);
    end Put_First;
 
    procedure Put_Second (Item : Fatigue_Rig.Station_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Second_Mailbox.Put (Item, Status);
+      Second_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Desk_1_Second,
          0);
    end Put_Second;
 
    procedure Put_Third (Item : Fatigue_Rig.Station_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Third_Mailbox.Put (Item, Status);
+      Third_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Desk_1_Third,
          0);
    end Put_Third;

@@ -10,15 +10,19 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when On_Cell_Silent =>
+            return
+              (if Enabled (Lose, Self, Now, Ins) then Lose
+               elsif Enabled (Still_Silent, Self, Now, Ins)
+                  then Still_Silent
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (Recover, Self, Now, Ins) then Recover else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

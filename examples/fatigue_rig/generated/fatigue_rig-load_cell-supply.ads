@@ -23,6 +23,24 @@ is
    subtype Firing is Selection range Initial_Entry .. Still_Silent;
    subtype Transition is Selection range Lose .. Still_Silent;
 
+   function In_Source
+     (T : Transition; Leaf : Supply_States.Leaf) return Boolean is
+     (case T is
+        when Lose => Leaf = Supply_States.Supplied,
+        when Recover | Still_Silent => Leaf = Supply_States.Silent)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Supply_States.Leaf) return Supply_States.Leaf is
+     (case T is
+        when Initial_Entry | Lose => Supply_States.Silent,
+        when Recover => Supply_States.Supplied,
+        when Still_Silent => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Lost : Boolean := True;
@@ -40,14 +58,6 @@ is
       Data    : Variables;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Supply_States.Leaf) return Boolean is
-     (case T is
-        when Lose => Leaf = Supply_States.Supplied,
-        when Recover | Still_Silent => Leaf = Supply_States.Silent);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
@@ -56,16 +66,8 @@ is
            when Lose => Now = On_Cell_Silent,
            when Recover =>
               Now = Conditions and then Ins.Raw.State = Ravenchart.Fresh,
-           when Still_Silent => Now = On_Cell_Silent));
+           when Still_Silent => Now = On_Cell_Silent)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Supply_States.Leaf) return Supply_States.Leaf is
-     (case T is
-        when Initial_Entry | Lose => Supply_States.Silent,
-        when Recover => Supply_States.Supplied,
-        when Still_Silent => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)

@@ -62,23 +62,19 @@ is
       Ceiling => System.Default_Priority + 2);
 
    procedure Put_Force (Item : Fatigue_Rig.Force) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Force_Mailbox.Put (Item, Status);
+      Force_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_1_Watch_Force, 0);
    end Put_Force;
 
    procedure Put_Sound (Item : Boolean) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Sound_Mailbox.Put (Item, Status);
+      Sound_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_1_Watch_Sound, 0);
    end Put_Sound;

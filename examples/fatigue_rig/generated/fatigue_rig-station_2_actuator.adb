@@ -88,34 +88,28 @@ is
       Ceiling => System.Default_Priority + 2);
 
    procedure Put_Force (Item : Fatigue_Rig.Force) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Force_Mailbox.Put (Item, Status);
+      Force_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_2_Actuator_Force, 0);
    end Put_Force;
 
    procedure Put_Permit (Item : Boolean) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Permit_Mailbox.Put (Item, Status);
+      Permit_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_2_Actuator_Permit, 0);
    end Put_Permit;
 
    procedure Put_Order (Item : Fatigue_Rig.Order) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Order_Mailbox.Put (Item, Status);
+      Order_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_2_Actuator_Order, 0);
    end Put_Order;

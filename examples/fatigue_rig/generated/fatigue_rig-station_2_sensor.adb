@@ -64,24 +64,20 @@ is
       Report => Health_Counts.Faults.Report);
 
    procedure Put_Raw (Item : Fatigue_Rig.Force) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Raw_Mailbox.Put (Item, Status);
+      Raw_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Station_2_Sensor_Raw, 0);
    end Put_Raw;
 
    procedure Offer (Item : Load_Cell.Event) is
    begin
-      case Item is
-         when Load_Cell.Cell_Silent =>
-            Supply_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Station_2_Sensor_Cell_Silent, 0);
-      end case;
+      Supply_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Station_2_Sensor_Cell_Silent
+         + Ravenchart.Element_Id (Load_Cell.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Supply_Fill (Found : out Ravenchart.Queueing.Fill) is

@@ -54,48 +54,47 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: stations in station_1.sensor.raw.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
-   Field_Receive_Budget : constant := 20_000;
+   Field_Receive_Wcet : constant := 20_000;
    Reception_T : constant := 500_000;
    Reception_D : constant := 500_000;
    Reception_J : constant := 0;
-   Reception_C : constant :=
-     Field_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Field_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [stations] released every T. B: panel in
    --  station_1.actuator.order.mailbox. C: what every release executes;
-   --  C_10: rows of every 10th release.
+   --  C_10: rows of one release in 10.
    Stations_Priority : constant := System.Default_Priority + 2;
-   Station_1_Sensor_Ports_Budget : constant := 30_000;
-   Station_1_Sensor_Supply_Budget : constant := 40_000;
-   Station_1_Sensor_Measure_Budget : constant := 30_000;
-   Station_1_Watch_Ports_Budget : constant := 30_000;
-   Station_1_Watch_Guard_Budget : constant := 50_000;
-   Station_1_Watch_Tell_Budget : constant := 20_000;
-   Station_1_Actuator_Ports_Budget : constant := 40_000;
-   Station_1_Actuator_Cycle_Budget : constant := 80_000;
-   Station_1_Actuator_Drive_Budget : constant := 20_000;
-   Station_1_Actuator_Tell_Budget : constant := 20_000;
-   Station_2_Sensor_Ports_Budget : constant := 30_000;
-   Station_2_Sensor_Supply_Budget : constant := 40_000;
-   Station_2_Sensor_Measure_Budget : constant := 30_000;
-   Station_2_Watch_Ports_Budget : constant := 30_000;
-   Station_2_Watch_Guard_Budget : constant := 50_000;
-   Station_2_Watch_Tell_Budget : constant := 20_000;
-   Station_2_Actuator_Ports_Budget : constant := 40_000;
-   Station_2_Actuator_Cycle_Budget : constant := 80_000;
-   Station_2_Actuator_Drive_Budget : constant := 20_000;
-   Station_2_Actuator_Tell_Budget : constant := 20_000;
-   Station_3_Sensor_Ports_Budget : constant := 30_000;
-   Station_3_Sensor_Supply_Budget : constant := 40_000;
-   Station_3_Sensor_Measure_Budget : constant := 30_000;
-   Station_3_Watch_Ports_Budget : constant := 30_000;
-   Station_3_Watch_Guard_Budget : constant := 50_000;
-   Station_3_Watch_Tell_Budget : constant := 20_000;
-   Station_3_Actuator_Ports_Budget : constant := 40_000;
-   Station_3_Actuator_Cycle_Budget : constant := 80_000;
-   Station_3_Actuator_Drive_Budget : constant := 20_000;
-   Station_3_Actuator_Tell_Budget : constant := 20_000;
+   Station_1_Sensor_Ports_Wcet : constant := 30_000;
+   Station_1_Sensor_Supply_Wcet : constant := 40_000;
+   Station_1_Sensor_Measure_Wcet : constant := 30_000;
+   Station_1_Watch_Ports_Wcet : constant := 30_000;
+   Station_1_Watch_Guard_Wcet : constant := 50_000;
+   Station_1_Watch_Tell_Wcet : constant := 20_000;
+   Station_1_Actuator_Ports_Wcet : constant := 40_000;
+   Station_1_Actuator_Cycle_Wcet : constant := 80_000;
+   Station_1_Actuator_Drive_Wcet : constant := 20_000;
+   Station_1_Actuator_Tell_Wcet : constant := 20_000;
+   Station_2_Sensor_Ports_Wcet : constant := 30_000;
+   Station_2_Sensor_Supply_Wcet : constant := 40_000;
+   Station_2_Sensor_Measure_Wcet : constant := 30_000;
+   Station_2_Watch_Ports_Wcet : constant := 30_000;
+   Station_2_Watch_Guard_Wcet : constant := 50_000;
+   Station_2_Watch_Tell_Wcet : constant := 20_000;
+   Station_2_Actuator_Ports_Wcet : constant := 40_000;
+   Station_2_Actuator_Cycle_Wcet : constant := 80_000;
+   Station_2_Actuator_Drive_Wcet : constant := 20_000;
+   Station_2_Actuator_Tell_Wcet : constant := 20_000;
+   Station_3_Sensor_Ports_Wcet : constant := 30_000;
+   Station_3_Sensor_Supply_Wcet : constant := 40_000;
+   Station_3_Sensor_Measure_Wcet : constant := 30_000;
+   Station_3_Watch_Ports_Wcet : constant := 30_000;
+   Station_3_Watch_Guard_Wcet : constant := 50_000;
+   Station_3_Watch_Tell_Wcet : constant := 20_000;
+   Station_3_Actuator_Ports_Wcet : constant := 40_000;
+   Station_3_Actuator_Cycle_Wcet : constant := 80_000;
+   Station_3_Actuator_Drive_Wcet : constant := 20_000;
+   Station_3_Actuator_Tell_Wcet : constant := 20_000;
    Stations_T : constant := 5_000_000;
    Stations_D : constant := 5_000_000;
    Station_1_Sensor_Ports_Divisor : constant := 1;
@@ -225,30 +224,30 @@ is
       "stations must keep divisors and phases of its rows");
    Stations_J : constant := 0;
    Stations_C : constant :=
-     Station_1_Sensor_Ports_Budget + Station_1_Sensor_Supply_Budget
-     + Station_1_Sensor_Measure_Budget + Station_1_Watch_Ports_Budget
-     + Station_1_Watch_Guard_Budget + Station_1_Watch_Tell_Budget
-     + Station_1_Actuator_Ports_Budget + Station_1_Actuator_Cycle_Budget
-     + Station_1_Actuator_Drive_Budget + Station_2_Sensor_Ports_Budget
-     + Station_2_Sensor_Supply_Budget + Station_2_Sensor_Measure_Budget
-     + Station_2_Watch_Ports_Budget + Station_2_Watch_Guard_Budget
-     + Station_2_Watch_Tell_Budget + Station_2_Actuator_Ports_Budget
-     + Station_2_Actuator_Cycle_Budget + Station_2_Actuator_Drive_Budget
-     + Station_3_Sensor_Ports_Budget + Station_3_Sensor_Supply_Budget
-     + Station_3_Sensor_Measure_Budget + Station_3_Watch_Ports_Budget
-     + Station_3_Watch_Guard_Budget + Station_3_Watch_Tell_Budget
-     + Station_3_Actuator_Ports_Budget + Station_3_Actuator_Cycle_Budget
-     + Station_3_Actuator_Drive_Budget + 2 * Board_Context_Switch;
+     Station_1_Sensor_Ports_Wcet + Station_1_Sensor_Supply_Wcet
+     + Station_1_Sensor_Measure_Wcet + Station_1_Watch_Ports_Wcet
+     + Station_1_Watch_Guard_Wcet + Station_1_Watch_Tell_Wcet
+     + Station_1_Actuator_Ports_Wcet + Station_1_Actuator_Cycle_Wcet
+     + Station_1_Actuator_Drive_Wcet + Station_2_Sensor_Ports_Wcet
+     + Station_2_Sensor_Supply_Wcet + Station_2_Sensor_Measure_Wcet
+     + Station_2_Watch_Ports_Wcet + Station_2_Watch_Guard_Wcet
+     + Station_2_Watch_Tell_Wcet + Station_2_Actuator_Ports_Wcet
+     + Station_2_Actuator_Cycle_Wcet + Station_2_Actuator_Drive_Wcet
+     + Station_3_Sensor_Ports_Wcet + Station_3_Sensor_Supply_Wcet
+     + Station_3_Sensor_Measure_Wcet + Station_3_Watch_Ports_Wcet
+     + Station_3_Watch_Guard_Wcet + Station_3_Watch_Tell_Wcet
+     + Station_3_Actuator_Ports_Wcet + Station_3_Actuator_Cycle_Wcet
+     + Station_3_Actuator_Drive_Wcet + 2 * Board_Context_Switch;
    Stations_C_10 : constant :=
-     Station_1_Actuator_Tell_Budget + Station_2_Actuator_Tell_Budget
-     + Station_3_Actuator_Tell_Budget;
+     Station_1_Actuator_Tell_Wcet + Station_2_Actuator_Tell_Wcet
+     + Station_3_Actuator_Tell_Wcet;
    Stations_B : constant := Board_Critical_Section;
 
    --  [panel] released every T. B: main in health.
    Panel_Priority : constant := System.Default_Priority + 1;
-   Desk_1_Ports_Budget : constant := 40_000;
-   Desk_1_Pass_On_Budget : constant := 20_000;
-   Desk_1_Tell_Budget : constant := 40_000;
+   Desk_1_Ports_Wcet : constant := 40_000;
+   Desk_1_Pass_On_Wcet : constant := 20_000;
+   Desk_1_Tell_Wcet : constant := 40_000;
    Panel_T : constant := 50_000_000;
    Panel_D : constant := 50_000_000;
    Panel_Divisor : constant := 1;
@@ -257,88 +256,88 @@ is
       "panel must keep divisors and phases of its rows");
    Panel_J : constant := 0;
    Panel_C : constant :=
-     Desk_1_Ports_Budget + Desk_1_Pass_On_Budget + Desk_1_Tell_Budget
+     Desk_1_Ports_Wcet + Desk_1_Pass_On_Wcet + Desk_1_Tell_Wcet
      + 2 * Board_Context_Switch;
    Panel_B : constant := Board_Critical_Section;
 
    --  [field.driver_rx.wanted] the driver, released by field.wanted. B:
    --  panel in field.transmit.
-   Field_Driver_Rx_Wanted_Budget : constant := 20_000;
+   Field_Driver_Rx_Wanted_Wcet : constant := 20_000;
    Field_Driver_Rx_Wanted_T : constant := 50_000_000;
    Field_Driver_Rx_Wanted_D : constant := 50_000_000;
    Field_Driver_Rx_Wanted_J : constant := Field_Wanted_R;
    Field_Driver_Rx_Wanted_C : constant :=
-     Field_Driver_Rx_Wanted_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Rx_Wanted_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Rx_Wanted_B : constant := Board_Critical_Section;
 
    --  [field.driver_tx.state] the driver, released by panel. B: panel in
    --  field.transmit.
-   Field_Driver_Tx_State_Budget : constant := 20_000;
+   Field_Driver_Tx_State_Wcet : constant := 20_000;
    Field_Driver_Tx_State_T : constant := 50_000_000;
    Field_Driver_Tx_State_D : constant := 50_000_000;
    Field_Driver_Tx_State_J : constant := Panel_R;
    Field_Driver_Tx_State_C : constant :=
-     Field_Driver_Tx_State_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Tx_State_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Tx_State_B : constant := Board_Critical_Section;
 
    --  [field.driver_rx.cell_1] the driver, released by field.cell_1. B:
    --  panel in field.transmit.
-   Field_Driver_Rx_Cell_1_Budget : constant := 20_000;
+   Field_Driver_Rx_Cell_1_Wcet : constant := 20_000;
    Field_Driver_Rx_Cell_1_T : constant := 5_000_000;
    Field_Driver_Rx_Cell_1_D : constant := 5_000_000;
    Field_Driver_Rx_Cell_1_J : constant := Field_Cell_1_R;
    Field_Driver_Rx_Cell_1_C : constant :=
-     Field_Driver_Rx_Cell_1_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Rx_Cell_1_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Rx_Cell_1_B : constant := Board_Critical_Section;
 
    --  [field.driver_rx.cell_2] the driver, released by field.cell_2. B:
    --  panel in field.transmit.
-   Field_Driver_Rx_Cell_2_Budget : constant := 20_000;
+   Field_Driver_Rx_Cell_2_Wcet : constant := 20_000;
    Field_Driver_Rx_Cell_2_T : constant := 5_000_000;
    Field_Driver_Rx_Cell_2_D : constant := 5_000_000;
    Field_Driver_Rx_Cell_2_J : constant := Field_Cell_2_R;
    Field_Driver_Rx_Cell_2_C : constant :=
-     Field_Driver_Rx_Cell_2_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Rx_Cell_2_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Rx_Cell_2_B : constant := Board_Critical_Section;
 
    --  [field.driver_rx.cell_3] the driver, released by field.cell_3. B:
    --  panel in field.transmit.
-   Field_Driver_Rx_Cell_3_Budget : constant := 20_000;
+   Field_Driver_Rx_Cell_3_Wcet : constant := 20_000;
    Field_Driver_Rx_Cell_3_T : constant := 5_000_000;
    Field_Driver_Rx_Cell_3_D : constant := 5_000_000;
    Field_Driver_Rx_Cell_3_J : constant := Field_Cell_3_R;
    Field_Driver_Rx_Cell_3_C : constant :=
-     Field_Driver_Rx_Cell_3_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Rx_Cell_3_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Rx_Cell_3_B : constant := Board_Critical_Section;
 
    --  [field.driver_tx.valve_1] the driver, released by stations. B: panel
    --  in field.transmit.
-   Field_Driver_Tx_Valve_1_Budget : constant := 20_000;
+   Field_Driver_Tx_Valve_1_Wcet : constant := 20_000;
    Field_Driver_Tx_Valve_1_T : constant := 5_000_000;
    Field_Driver_Tx_Valve_1_D : constant := 5_000_000;
    Field_Driver_Tx_Valve_1_J : constant := Stations_R;
    Field_Driver_Tx_Valve_1_C : constant :=
-     Field_Driver_Tx_Valve_1_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Tx_Valve_1_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Tx_Valve_1_B : constant := Board_Critical_Section;
 
    --  [field.driver_tx.valve_2] the driver, released by stations. B: panel
    --  in field.transmit.
-   Field_Driver_Tx_Valve_2_Budget : constant := 20_000;
+   Field_Driver_Tx_Valve_2_Wcet : constant := 20_000;
    Field_Driver_Tx_Valve_2_T : constant := 5_000_000;
    Field_Driver_Tx_Valve_2_D : constant := 5_000_000;
    Field_Driver_Tx_Valve_2_J : constant := Stations_R;
    Field_Driver_Tx_Valve_2_C : constant :=
-     Field_Driver_Tx_Valve_2_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Tx_Valve_2_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Tx_Valve_2_B : constant := Board_Critical_Section;
 
    --  [field.driver_tx.valve_3] the driver, released by stations. B: panel
    --  in field.transmit.
-   Field_Driver_Tx_Valve_3_Budget : constant := 20_000;
+   Field_Driver_Tx_Valve_3_Wcet : constant := 20_000;
    Field_Driver_Tx_Valve_3_T : constant := 5_000_000;
    Field_Driver_Tx_Valve_3_D : constant := 5_000_000;
    Field_Driver_Tx_Valve_3_J : constant := Stations_R;
    Field_Driver_Tx_Valve_3_C : constant :=
-     Field_Driver_Tx_Valve_3_Budget + 2 * Board_Context_Switch;
+     Field_Driver_Tx_Valve_3_Wcet + 2 * Board_Context_Switch;
    Field_Driver_Tx_Valve_3_B : constant := Board_Critical_Section;
 
    function Field_Driver_Rx_Wanted_Up (W : Window) return Time is
@@ -547,7 +546,7 @@ is
    Station_1_Sensor_Ports_W : constant :=
      Station_1_Sensor_Ports_Done - Stations_J;
    Station_1_Sensor_Ports_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget + Stations_B
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet + Stations_B
      + Reception_Up (Station_1_Sensor_Ports_W);
    pragma Compile_Time_Error
      (Station_1_Sensor_Ports_W /= Station_1_Sensor_Ports_Needs,
@@ -558,8 +557,8 @@ is
    Station_1_Sensor_Measure_W : constant :=
      Station_1_Sensor_Measure_Done - Stations_J;
    Station_1_Sensor_Measure_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
      + Stations_B + Reception_Up (Station_1_Sensor_Measure_W);
    pragma Compile_Time_Error
      (Station_1_Sensor_Measure_W /= Station_1_Sensor_Measure_Needs,
@@ -570,9 +569,9 @@ is
    Station_1_Watch_Ports_W : constant :=
      Station_1_Watch_Ports_Done - Stations_J;
    Station_1_Watch_Ports_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
-     + Station_1_Watch_Ports_Budget + Stations_B
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
+     + Station_1_Watch_Ports_Wcet + Stations_B
      + Reception_Up (Station_1_Watch_Ports_W);
    pragma Compile_Time_Error
      (Station_1_Watch_Ports_W /= Station_1_Watch_Ports_Needs,
@@ -583,10 +582,10 @@ is
    Station_1_Watch_Guard_W : constant :=
      Station_1_Watch_Guard_Done - Stations_J;
    Station_1_Watch_Guard_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
-     + Station_1_Watch_Ports_Budget + Station_1_Watch_Guard_Budget
-     + Stations_B + Reception_Up (Station_1_Watch_Guard_W);
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
+     + Station_1_Watch_Ports_Wcet + Station_1_Watch_Guard_Wcet + Stations_B
+     + Reception_Up (Station_1_Watch_Guard_W);
    pragma Compile_Time_Error
      (Station_1_Watch_Guard_W /= Station_1_Watch_Guard_Needs,
       "station_1.watch.Guard claims a wrong response time");
@@ -596,10 +595,10 @@ is
    Station_1_Watch_Tell_W : constant :=
      Station_1_Watch_Tell_Done - Stations_J;
    Station_1_Watch_Tell_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
-     + Station_1_Watch_Ports_Budget + Station_1_Watch_Guard_Budget
-     + Station_1_Watch_Tell_Budget + Stations_B
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
+     + Station_1_Watch_Ports_Wcet + Station_1_Watch_Guard_Wcet
+     + Station_1_Watch_Tell_Wcet + Stations_B
      + Reception_Up (Station_1_Watch_Tell_W);
    pragma Compile_Time_Error
      (Station_1_Watch_Tell_W /= Station_1_Watch_Tell_Needs,
@@ -610,10 +609,10 @@ is
    Station_1_Actuator_Ports_W : constant :=
      Station_1_Actuator_Ports_Done - Stations_J;
    Station_1_Actuator_Ports_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
-     + Station_1_Watch_Ports_Budget + Station_1_Watch_Guard_Budget
-     + Station_1_Watch_Tell_Budget + Station_1_Actuator_Ports_Budget
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
+     + Station_1_Watch_Ports_Wcet + Station_1_Watch_Guard_Wcet
+     + Station_1_Watch_Tell_Wcet + Station_1_Actuator_Ports_Wcet
      + Stations_B + Reception_Up (Station_1_Actuator_Ports_W);
    pragma Compile_Time_Error
      (Station_1_Actuator_Ports_W /= Station_1_Actuator_Ports_Needs,
@@ -624,11 +623,11 @@ is
    Station_1_Actuator_Drive_W : constant :=
      Station_1_Actuator_Drive_Done - Stations_J;
    Station_1_Actuator_Drive_Needs : constant :=
-     2 * Board_Context_Switch + Station_1_Sensor_Ports_Budget
-     + Station_1_Sensor_Supply_Budget + Station_1_Sensor_Measure_Budget
-     + Station_1_Watch_Ports_Budget + Station_1_Watch_Guard_Budget
-     + Station_1_Watch_Tell_Budget + Station_1_Actuator_Ports_Budget
-     + Station_1_Actuator_Cycle_Budget + Station_1_Actuator_Drive_Budget
+     2 * Board_Context_Switch + Station_1_Sensor_Ports_Wcet
+     + Station_1_Sensor_Supply_Wcet + Station_1_Sensor_Measure_Wcet
+     + Station_1_Watch_Ports_Wcet + Station_1_Watch_Guard_Wcet
+     + Station_1_Watch_Tell_Wcet + Station_1_Actuator_Ports_Wcet
+     + Station_1_Actuator_Cycle_Wcet + Station_1_Actuator_Drive_Wcet
      + Stations_B + Reception_Up (Station_1_Actuator_Drive_W);
    pragma Compile_Time_Error
      (Station_1_Actuator_Drive_W /= Station_1_Actuator_Drive_Needs,

@@ -10,15 +10,16 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when Conditions =>
+            return
+              (if Enabled (Supplied, Self, Now, Ins) then Supplied
+               elsif Enabled (Cell_Lost, Self, Now, Ins) then Cell_Lost
+               elsif Enabled (Overload, Self, Now, Ins) then Overload
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

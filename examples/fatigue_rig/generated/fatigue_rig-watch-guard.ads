@@ -22,6 +22,23 @@ is
    subtype Firing is Selection range Initial_Entry .. Overload;
    subtype Transition is Selection range Supplied .. Overload;
 
+   function In_Source
+     (T : Transition; Leaf : Guard_States.Leaf) return Boolean is
+     (case T is
+        when Supplied => Leaf = Guard_States.Waiting,
+        when Cell_Lost | Overload => Leaf = Guard_States.Watching)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Guard_States.Leaf is
+     (case T is
+        when Initial_Entry => Guard_States.Waiting,
+        when Supplied => Guard_States.Watching,
+        when Cell_Lost | Overload => Guard_States.Tripped);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Tripped : Boolean := False;
@@ -41,14 +58,6 @@ is
       Data    : Variables;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Guard_States.Leaf) return Boolean is
-     (case T is
-        when Supplied => Leaf = Guard_States.Waiting,
-        when Cell_Lost | Overload => Leaf = Guard_States.Watching);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
@@ -59,15 +68,9 @@ is
            when Overload =>
               Now = Conditions
               and then (Ins.Force.Value > Ins.Limit
-                 or else Ins.Force.Value < (-Ins.Limit))));
+                 or else Ins.Force.Value < (-Ins.Limit))))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Guard_States.Leaf is
-     (case T is
-        when Initial_Entry => Guard_States.Waiting,
-        when Supplied => Guard_States.Watching,
-        when Cell_Lost | Overload => Guard_States.Tripped);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)

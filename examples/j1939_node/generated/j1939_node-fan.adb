@@ -191,37 +191,26 @@ is
    end Put_Request_By_Null;
 
    procedure Put_Engine (Item : J1939_Node.Coolant_Temperature) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Engine_Mailbox.Put (Item, Status);
+      Engine_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Fan_Engine, 0);
    end Put_Engine;
 
    procedure Offer (Item : Fan_Controller.Event) is
    begin
       case Item.Name is
-         when Fan_Controller.Claimed_Too =>
+         when Fan_Controller.Claimed_Too | Fan_Controller.Asked_By_Null =>
             Address_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Fan_Claimed_Too, 0);
-         when Fan_Controller.Asked_All =>
+         when Fan_Controller.Asked_All | Fan_Controller.Asked_Us =>
             Address_Offers.Offer (Item);
             Answers_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_All, 0);
-         when Fan_Controller.Asked_Us =>
-            Address_Offers.Offer (Item);
-            Answers_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_Us, 0);
-         when Fan_Controller.Asked_By_Null =>
-            Address_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Fan_Asked_By_Null, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Fan_Claimed_Too
+         + Ravenchart.Element_Id (Fan_Controller.Event_Name'Pos (Item.Name)),
+         0);
    end Offer;
 
    procedure Read_Address_Fill (Found : out Ravenchart.Queueing.Fill) is

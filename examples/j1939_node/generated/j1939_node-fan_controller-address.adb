@@ -11,15 +11,43 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins, Item)));
-      end loop;
-      return None;
+      case Now is
+         when On_Claimed_Too =>
+            return
+              (if Enabled (Yield, Self, Now, Ins, Item) then Yield
+               elsif Enabled (Defend, Self, Now, Ins, Item) then Defend
+               else None);
+         when On_Asked_All =>
+            return
+              (if Enabled (Tell_All, Self, Now, Ins, Item) then Tell_All
+               elsif Enabled (Tell_Lost, Self, Now, Ins, Item)
+                  then Tell_Lost
+               else None);
+         when On_Asked_Us =>
+            return
+              (if Enabled (Tell_Us, Self, Now, Ins, Item) then Tell_Us
+               else None);
+         when On_Asked_By_Null =>
+            return
+              (if Enabled (Tell_Null, Self, Now, Ins, Item) then Tell_Null
+               elsif Enabled (Tell_Lost_Null, Self, Now, Ins, Item)
+                  then Tell_Lost_Null
+               else None);
+         when Expiry_Of_Claim =>
+            return
+              (if Enabled (Claim, Self, Now, Ins, Item) then Claim
+               else None);
+         when Expiry_Of_Granted =>
+            return
+              (if Enabled (Granted, Self, Now, Ins, Item) then Granted
+               else None);
+         when Expiry_Of_Give_Up =>
+            return
+              (if Enabled (Give_Up, Self, Now, Ins, Item) then Give_Up
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

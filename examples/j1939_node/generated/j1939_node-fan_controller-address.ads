@@ -37,6 +37,31 @@ is
    subtype Firing is Selection range Initial_Entry .. Tell_Lost_Null;
    subtype Transition is Selection range Granted .. Tell_Lost_Null;
 
+   function In_Source
+     (T : Transition; Leaf : Address_States.Leaf) return Boolean is
+     (case T is
+        when Granted => Leaf = Address_States.Claiming,
+        when Claim => Leaf = Address_States.Before,
+        when Yield | Defend | Tell_All | Tell_Us | Tell_Null =>
+           Leaf in Address_States.Contending,
+        when Give_Up => Leaf = Address_States.Yielding,
+        when Tell_Lost | Tell_Lost_Null =>
+           Leaf = Address_States.Without_Address) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Address_States.Leaf) return Address_States.Leaf is
+     (case T is
+        when Initial_Entry => Address_States.Before,
+        when Granted => Address_States.Claimed,
+        when Claim => Address_States.Claiming,
+        when Yield | Tell_Lost | Tell_Lost_Null => Address_States.Yielding,
+        when Defend | Tell_All | Tell_Us | Tell_Null => Leaf,
+        when Give_Up => Address_States.Without_Address);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Name_Low  : J1939_Node.Name_Half;
@@ -74,19 +99,6 @@ is
       Timers  : Time_Outs;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Address_States.Leaf) return Boolean is
-     (case T is
-        when Granted => Leaf = Address_States.Claiming,
-        when Claim => Leaf = Address_States.Before,
-        when Yield | Defend | Tell_All | Tell_Us | Tell_Null =>
-           Leaf in Address_States.Contending,
-        when Give_Up => Leaf = Address_States.Yielding,
-        when Tell_Lost | Tell_Lost_Null =>
-           Leaf = Address_States.Without_Address);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T    : Transition;
       Self : Region;
@@ -119,19 +131,9 @@ is
               Now = On_Asked_All and then Item.Value_Pgn_Octets.Pgn = 60_928,
            when Tell_Lost_Null =>
               Now = On_Asked_By_Null
-              and then Item.Value_Pgn_Octets.Pgn = 60_928));
+              and then Item.Value_Pgn_Octets.Pgn = 60_928))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Address_States.Leaf) return Address_States.Leaf is
-     (case T is
-        when Initial_Entry => Address_States.Before,
-        when Granted => Address_States.Claimed,
-        when Claim => Address_States.Claiming,
-        when Yield | Tell_Lost | Tell_Lost_Null => Address_States.Yielding,
-        when Defend | Tell_All | Tell_Us | Tell_Null => Leaf,
-        when Give_Up => Address_States.Without_Address);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -11,15 +11,30 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins, Item)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins, Item)));
-      end loop;
-      return None;
+      case Now is
+         when On_Asked_All =>
+            return
+              (if Enabled (Answer_All, Self, Now, Ins, Item) then Answer_All
+               else None);
+         when On_Asked_Us =>
+            return
+              (if Enabled (Answer, Self, Now, Ins, Item) then Answer
+               elsif Enabled (Refuse, Self, Now, Ins, Item) then Refuse
+               else None);
+         when Expiry_Of_Cyclic =>
+            return
+              (if Enabled (Cyclic, Self, Now, Ins, Item) then Cyclic
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (With_Address, Self, Now, Ins, Item)
+                  then With_Address
+               elsif Enabled (Without_Address, Self, Now, Ins, Item)
+                  then Without_Address
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -33,6 +33,24 @@ is
    subtype Firing is Selection range Initial_Entry .. Refuse;
    subtype Transition is Selection range With_Address .. Refuse;
 
+   function In_Source
+     (T : Transition; Leaf : Answers_States.Leaf) return Boolean is
+     (case T is
+        when With_Address => Leaf = Answers_States.Silent,
+        when Without_Address | Cyclic | Answer_All | Answer | Refuse =>
+           Leaf = Answers_States.Sending) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Answers_States.Leaf) return Answers_States.Leaf is
+     (case T is
+        when Initial_Entry | Without_Address => Answers_States.Silent,
+        when With_Address => Answers_States.Sending,
+        when Cyclic | Answer_All | Answer | Refuse => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Due : J1939_Node.Count := 0;
@@ -72,15 +90,6 @@ is
       Data    : Variables;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Answers_States.Leaf) return Boolean is
-     (case T is
-        when With_Address => Leaf = Answers_States.Silent,
-        when Without_Address | Cyclic | Answer_All | Answer | Refuse =>
-           Leaf = Answers_States.Sending);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T    : Transition;
       Self : Region;
@@ -102,16 +111,9 @@ is
            when Refuse =>
               Now = On_Asked_Us
               and then Item.Value_Pgn_Octets.Pgn /= 65_213
-              and then Item.Value_Pgn_Octets.Pgn /= 60_928));
+              and then Item.Value_Pgn_Octets.Pgn /= 60_928))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Answers_States.Leaf) return Answers_States.Leaf is
-     (case T is
-        when Initial_Entry | Without_Address => Answers_States.Silent,
-        when With_Address => Answers_States.Sending,
-        when Cyclic | Answer_All | Answer | Refuse => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -57,19 +57,19 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: protocol in fan.rival.mailbox.
    Reception_Priority : constant := System.Default_Priority + 3;
-   Line_Receive_Budget : constant := 40_000;
+   Line_Receive_Wcet : constant := 40_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_C : constant := Line_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Line_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [protocol] released every T. B: control in fan.engine.
    Protocol_Priority : constant := System.Default_Priority + 2;
-   Fan_Ports_Budget : constant := 200_000;
-   Fan_Address_Budget : constant := 100_000;
-   Fan_Answers_Budget : constant := 100_000;
-   Fan_Tell_Budget : constant := 100_000;
+   Fan_Ports_Wcet : constant := 200_000;
+   Fan_Address_Wcet : constant := 100_000;
+   Fan_Answers_Wcet : constant := 100_000;
+   Fan_Tell_Wcet : constant := 100_000;
    Protocol_T : constant := 10_000_000;
    Protocol_D : constant := 10_000_000;
    Protocol_Divisor : constant := 1;
@@ -79,13 +79,13 @@ is
       "protocol must keep divisors and phases of its rows");
    Protocol_J : constant := 0;
    Protocol_C : constant :=
-     Fan_Ports_Budget + Fan_Address_Budget + Fan_Answers_Budget
-     + Fan_Tell_Budget + 2 * Board_Context_Switch;
+     Fan_Ports_Wcet + Fan_Address_Wcet + Fan_Answers_Wcet + Fan_Tell_Wcet
+     + 2 * Board_Context_Switch;
    Protocol_B : constant := Board_Critical_Section;
 
    --  [control] released every T. B: main in health.
    Control_Priority : constant := System.Default_Priority + 1;
-   Fan_Regulate_Budget : constant := 100_000;
+   Fan_Regulate_Wcet : constant := 100_000;
    Control_T : constant := 100_000_000;
    Control_D : constant := 100_000_000;
    Control_Divisor : constant := 1;
@@ -94,112 +94,110 @@ is
      (Control_Divisor /= 1 or else Control_Phase /= 0,
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
-   Control_C : constant := Fan_Regulate_Budget + 2 * Board_Context_Switch;
+   Control_C : constant := Fan_Regulate_Wcet + 2 * Board_Context_Switch;
    Control_B : constant := Board_Critical_Section;
 
    --  [line.driver_tx.claim] the driver, released by protocol. B: protocol
    --  in line.transmit.
-   Line_Driver_Tx_Claim_Budget : constant := 40_000;
+   Line_Driver_Tx_Claim_Wcet : constant := 40_000;
    Line_Driver_Tx_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Claim_D : constant := 10_000_000;
    Line_Driver_Tx_Claim_J : constant := Protocol_R;
    Line_Driver_Tx_Claim_C : constant :=
-     Line_Driver_Tx_Claim_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Claim_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Claim_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.rival_claim] the driver, released by
    --  line.rival_claim. B: protocol in line.transmit.
-   Line_Driver_Rx_Rival_Claim_Budget : constant := 40_000;
+   Line_Driver_Rx_Rival_Claim_Wcet : constant := 40_000;
    Line_Driver_Rx_Rival_Claim_T : constant := 10_000_000;
    Line_Driver_Rx_Rival_Claim_D : constant := 10_000_000;
    Line_Driver_Rx_Rival_Claim_J : constant := Line_Rival_Claim_R;
    Line_Driver_Rx_Rival_Claim_C : constant :=
-     Line_Driver_Rx_Rival_Claim_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Rival_Claim_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Rival_Claim_B : constant := Board_Critical_Section;
 
    --  [line.driver_tx.cannot_claim] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Cannot_Claim_Budget : constant := 40_000;
+   Line_Driver_Tx_Cannot_Claim_Wcet : constant := 40_000;
    Line_Driver_Tx_Cannot_Claim_T : constant := 10_000_000;
    Line_Driver_Tx_Cannot_Claim_D : constant := 10_000_000;
    Line_Driver_Tx_Cannot_Claim_J : constant := Protocol_R;
    Line_Driver_Tx_Cannot_Claim_C : constant :=
-     Line_Driver_Tx_Cannot_Claim_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Cannot_Claim_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Cannot_Claim_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.request_to_all] the driver, released by
    --  line.request_to_all. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_To_All_Budget : constant := 40_000;
+   Line_Driver_Rx_Request_To_All_Wcet : constant := 40_000;
    Line_Driver_Rx_Request_To_All_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_All_D : constant := 10_000_000;
    Line_Driver_Rx_Request_To_All_J : constant := Line_Request_To_All_R;
    Line_Driver_Rx_Request_To_All_C : constant :=
-     Line_Driver_Rx_Request_To_All_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Request_To_All_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_To_All_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.request_to_us] the driver, released by
    --  line.request_to_us. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_To_Us_Budget : constant := 40_000;
+   Line_Driver_Rx_Request_To_Us_Wcet : constant := 40_000;
    Line_Driver_Rx_Request_To_Us_T : constant := 10_000_000;
    Line_Driver_Rx_Request_To_Us_D : constant := 10_000_000;
    Line_Driver_Rx_Request_To_Us_J : constant := Line_Request_To_Us_R;
    Line_Driver_Rx_Request_To_Us_C : constant :=
-     Line_Driver_Rx_Request_To_Us_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Request_To_Us_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_To_Us_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.request_without_address] the driver, released by
    --  line.request_without_address. B: protocol in line.transmit.
-   Line_Driver_Rx_Request_Without_Address_Budget : constant := 40_000;
+   Line_Driver_Rx_Request_Without_Address_Wcet : constant := 40_000;
    Line_Driver_Rx_Request_Without_Address_T : constant := 10_000_000;
    Line_Driver_Rx_Request_Without_Address_D : constant := 10_000_000;
    Line_Driver_Rx_Request_Without_Address_J : constant :=
      Line_Request_Without_Address_R;
    Line_Driver_Rx_Request_Without_Address_C : constant :=
-     Line_Driver_Rx_Request_Without_Address_Budget
-     + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Request_Without_Address_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Request_Without_Address_B : constant :=
      Board_Critical_Section;
 
    --  [line.driver_tx.acknowledgement] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Acknowledgement_Budget : constant := 40_000;
+   Line_Driver_Tx_Acknowledgement_Wcet : constant := 40_000;
    Line_Driver_Tx_Acknowledgement_T : constant := 10_000_000;
    Line_Driver_Tx_Acknowledgement_D : constant := 10_000_000;
    Line_Driver_Tx_Acknowledgement_J : constant := Protocol_R;
    Line_Driver_Tx_Acknowledgement_C : constant :=
-     Line_Driver_Tx_Acknowledgement_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Acknowledgement_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Acknowledgement_B : constant := Board_Critical_Section;
 
    --  [line.driver_rx.engine_temperature_1] the driver, released by
    --  line.engine_temperature_1. B: protocol in line.transmit.
-   Line_Driver_Rx_Engine_Temperature_1_Budget : constant := 40_000;
+   Line_Driver_Rx_Engine_Temperature_1_Wcet : constant := 40_000;
    Line_Driver_Rx_Engine_Temperature_1_T : constant := 500_000_000;
    Line_Driver_Rx_Engine_Temperature_1_D : constant := 500_000_000;
    Line_Driver_Rx_Engine_Temperature_1_J : constant :=
      Line_Engine_Temperature_1_R;
    Line_Driver_Rx_Engine_Temperature_1_C : constant :=
-     Line_Driver_Rx_Engine_Temperature_1_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Rx_Engine_Temperature_1_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Rx_Engine_Temperature_1_B : constant :=
      Board_Critical_Section;
 
    --  [line.driver_tx.fan_drive_state] the driver, released by protocol. B:
    --  protocol in line.transmit.
-   Line_Driver_Tx_Fan_Drive_State_Budget : constant := 40_000;
+   Line_Driver_Tx_Fan_Drive_State_Wcet : constant := 40_000;
    Line_Driver_Tx_Fan_Drive_State_T : constant := 10_000_000;
    Line_Driver_Tx_Fan_Drive_State_D : constant := 10_000_000;
    Line_Driver_Tx_Fan_Drive_State_J : constant := Protocol_R;
    Line_Driver_Tx_Fan_Drive_State_C : constant :=
-     Line_Driver_Tx_Fan_Drive_State_Budget + 2 * Board_Context_Switch;
+     Line_Driver_Tx_Fan_Drive_State_Wcet + 2 * Board_Context_Switch;
    Line_Driver_Tx_Fan_Drive_State_B : constant := Board_Critical_Section;
 
    --  [board.probe] released every T. B: main in board.probe.board.
    Board_Probe_Priority : constant := System.Default_Priority + 5;
-   Board_Probe_Budget : constant := 20_000;
+   Board_Probe_Wcet : constant := 20_000;
    Board_Probe_T : constant := 1_000_000;
    Board_Probe_D : constant := 1_000_000;
    Board_Probe_J : constant := 0;
-   Board_Probe_C : constant :=
-     Board_Probe_Budget + 2 * Board_Context_Switch;
+   Board_Probe_C : constant := Board_Probe_Wcet + 2 * Board_Context_Switch;
    Board_Probe_B : constant := Board_Critical_Section;
 
    function Board_Probe_Up (W : Window) return Time is

@@ -146,12 +146,10 @@ is
       Report => Health_Counts.Faults.Report);
 
    procedure Put_Line (Item : Infusion_System.Line) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Line_Mailbox.Put (Item, Status);
+      Line_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Bed_Line, 0);
    end Put_Line;
 
@@ -166,37 +164,13 @@ is
       case Item.Name is
          when Pump.Pressed =>
             Keys_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_Pressed, 0);
-         when Pump.Sensor_Lost =>
+         when Pump.Sensor_Lost | Pump.Start | Pump.Stop | Pump.Silence
+            | Pump.Resume | Pump.New_Portion | Pump.New_Volume =>
             Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_Sensor_Lost, 0);
-         when Pump.Start =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Start,
-               0);
-         when Pump.Stop =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Bed_Stop,
-               0);
-         when Pump.Silence =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_Silence, 0);
-         when Pump.Resume =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_Resume, 0);
-         when Pump.New_Portion =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_New_Portion, 0);
-         when Pump.New_Volume =>
-            Infusion_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Bed_New_Volume, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Bed_Pressed
+         + Ravenchart.Element_Id (Pump.Event_Name'Pos (Item.Name)), 0);
    end Offer;
 
    procedure Read_Infusion_Fill (Found : out Ravenchart.Queueing.Fill) is
@@ -349,18 +323,23 @@ is
             end if;
          end loop;
          Trace.Buffer.Note (Ravenchart.Traces.State, Elements.Bed_Infusion,
-            Pump.Infusion_States.Leaf'Pos (Infusion_Region.Place.Top));
-         if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
+            Pump.Infusion_States.Leaf'Pos
+              (Infusion_Region.Configuration.Top));
+         if Infusion_Region.Configuration.Top
+            = Pump.Infusion_States.Self_Test
+         then
             Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Sensor,
                Pump.Infusion_States.Sensor_Leaf'Pos
-                 (Infusion_Region.Place.In_Sensor));
+                 (Infusion_Region.Configuration.In_Sensor));
          end if;
-         if Infusion_Region.Place.Top = Pump.Infusion_States.Self_Test then
+         if Infusion_Region.Configuration.Top
+            = Pump.Infusion_States.Self_Test
+         then
             Trace.Buffer.Note (Ravenchart.Traces.State,
                Elements.Bed_Infusion_Motor,
                Pump.Infusion_States.Motor_Leaf'Pos
-                 (Infusion_Region.Place.In_Motor));
+                 (Infusion_Region.Configuration.In_Motor));
          end if;
       end if;
       if Infusion_Region.Deferred.Lost then
@@ -385,7 +364,7 @@ is
       Step_Infusion (Ins);
       Turn_Visit_Board.Write (Infusion_Region.Visits_Turning);
       Fill_Visit_Board.Write (Infusion_Region.Visits_Filling);
-      Infusion_Board.Write (Infusion_Region.Place);
+      Infusion_Board.Write (Infusion_Region.Configuration);
       Given_Board.Write (Infusion_Region.Data.Given);
       Speed_Board.Write (Infusion_Region.Data.Speed);
       Lamp_Board.Write (Infusion_Region.Data.Lamp);

@@ -7,50 +7,167 @@ with SPARK_Mode
 is
    use type Ravenchart.Event_Count;
 
-   function Selected
-     (First : Transition;
-      Last  : Transition;
-      Self  : Region;
-      Now   : Occurrence;
-      Ins   : Inputs;
-      Item  : Event) return Selection
+   function Selected_Motor
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
    with
      Post =>
-       Is_Selection (Selected'Result, First, Last, Self, Now, Ins, Item)
+       Is_Selection (Selected_Motor'Result, Motor_Transition'First,
+          Motor_Transition'Last, Self, Now, Ins, Item)
    is
    begin
-      for T in Transition range First .. Last loop
-         if Enabled (T, Self, Now, Ins, Item) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in First .. T =>
-                not Enabled (J, Self, Now, Ins, Item)));
-      end loop;
-      return None;
-   end Selected;
+      case Now is
+         when Completion_Of_Turning =>
+            return
+              (if Enabled (Turned, Self, Now, Ins, Item) then Turned
+               else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Motor;
+
+   function Selected_Sensor
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with
+     Post =>
+       Is_Selection (Selected_Sensor'Result, Sensor_Transition'First,
+          Sensor_Transition'Last, Self, Now, Ins, Item)
+   is
+   begin
+      case Now is
+         when Conditions =>
+            return
+              (if Enabled (Heard, Self, Now, Ins, Item) then Heard
+               else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Sensor;
+
+   function Selected_Top
+     (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
+     return Selection
+   with
+     Post =>
+       Is_Selection (Selected_Top'Result, Top_Transition'First,
+          Top_Transition'Last, Self, Now, Ins, Item)
+   is
+   begin
+      case Now is
+         when Completion_Of_Self_Test =>
+            return
+              (if Enabled (Ready, Self, Now, Ins, Item) then Ready
+               else None);
+         when Completion_Of_Running =>
+            return
+              (if Enabled (Finished, Self, Now, Ins, Item) then Finished
+               else None);
+         when Completion_Of_Filling =>
+            return
+              (if Enabled (Filled_Up, Self, Now, Ins, Item) then Filled_Up
+               else None);
+         when On_New_Portion =>
+            return
+              (if Enabled (Change, Self, Now, Ins, Item) then Change
+               elsif Enabled (Defer_New_Portion_In_Loading, Self, Now, Ins,
+                     Item)
+                  then Defer_New_Portion_In_Loading
+               elsif Enabled (Defer_New_Portion_In_Filling, Self, Now, Ins,
+                     Item)
+                  then Defer_New_Portion_In_Filling
+               elsif Enabled (Order_Portion, Self, Now, Ins, Item)
+                  then Order_Portion
+               elsif Enabled (Defer_New_Portion_In_Self_Test, Self, Now,
+                     Ins, Item)
+                  then Defer_New_Portion_In_Self_Test
+               elsif Enabled (Defer_New_Portion_In_Alarm, Self, Now, Ins,
+                     Item)
+                  then Defer_New_Portion_In_Alarm
+               else None);
+         when On_New_Volume =>
+            return
+              (if Enabled (Order_Volume, Self, Now, Ins, Item)
+                  then Order_Volume
+               elsif Enabled (Defer_New_Volume_In_Self_Test, Self, Now, Ins,
+                     Item)
+                  then Defer_New_Volume_In_Self_Test
+               else None);
+         when On_Start =>
+            return
+              (if Enabled (Start, Self, Now, Ins, Item) then Start
+               else None);
+         when On_Stop =>
+            return
+              (if Enabled (Stop, Self, Now, Ins, Item) then Stop
+               elsif Enabled (Give_Up, Self, Now, Ins, Item) then Give_Up
+               else None);
+         when On_Sensor_Lost =>
+            return
+              (if Enabled (Lost, Self, Now, Ins, Item) then Lost else None);
+         when On_Silence =>
+            return
+              (if Enabled (Hush, Self, Now, Ins, Item) then Hush else None);
+         when On_Resume =>
+            return
+              (if Enabled (Resume, Self, Now, Ins, Item) then Resume
+               else None);
+         when Expiry_Of_Again =>
+            return
+              (if Enabled (Again, Self, Now, Ins, Item) then Again
+               else None);
+         when Expiry_Of_Beat =>
+            return
+              (if Enabled (Beat, Self, Now, Ins, Item) then Beat else None);
+         when Expiry_Of_Remind =>
+            return
+              (if Enabled (Remind, Self, Now, Ins, Item) then Remind
+               else None);
+         when Passing =>
+            return
+              (if Enabled (Restore_Where_It_Was, Self, Now, Ins, Item)
+                  then Restore_Where_It_Was
+               elsif Enabled (Default_Of_Where_It_Was, Self, Now, Ins, Item)
+                  then Default_Of_Where_It_Was
+               elsif Enabled (Go_On, Self, Now, Ins, Item) then Go_On
+               elsif Enabled (Not_Yet, Self, Now, Ins, Item) then Not_Yet
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (Loaded, Self, Now, Ins, Item) then Loaded
+               elsif Enabled (Enough, Self, Now, Ins, Item) then Enough
+               elsif Enabled (Trouble, Self, Now, Ins, Item) then Trouble
+               else None);
+         when others =>
+            return None;
+      end case;
+   end Selected_Top;
 
    function Next_Segment
      (Self : Region; Ins : Inputs; Item : Event) return Transition
    with
-     Pre => Segments_Left (Self.Place) > 0,
+     Pre => Segments_Left (Self.Configuration) > 0,
      Post =>
        Enabled (Next_Segment'Result, Self, Passing, Ins, Item)
        and then Is_Segment (Next_Segment'Result)
    is
    begin
       pragma Assert
-        ((if Self.Place.Top = Infusion_States.Where_It_Was
+        ((if Self.Configuration.Top = Infusion_States.Where_It_Was
              then Enabled (Restore_Where_It_Was, Self, Passing, Ins, Item)
                 or else Enabled (Default_Of_Where_It_Was, Self, Passing,
                      Ins, Item)));
       pragma Assert
-        ((if Self.Place.Top = Infusion_States.May_Go_On
+        ((if Self.Configuration.Top = Infusion_States.May_Go_On
              then Enabled (Go_On, Self, Passing, Ins, Item)
                 or else Enabled (Not_Yet, Self, Passing, Ins, Item)));
       return
-        Selected (Transition'First, Transition'Last, Self, Passing, Ins,
-           Item);
+        (if Enabled (Restore_Where_It_Was, Self, Passing, Ins, Item)
+            then Restore_Where_It_Was
+         elsif Enabled (Default_Of_Where_It_Was, Self, Passing, Ins, Item)
+            then Default_Of_Where_It_Was
+         elsif Enabled (Go_On, Self, Passing, Ins, Item) then Go_On
+         else Not_Yet);
    end Next_Segment;
 
    function Choose
@@ -58,16 +175,10 @@ is
      return Choice is
       C : Choice;
    begin
-      C.Motor :=
-        Selected (Motor_Transition'First, Motor_Transition'Last, Self, Now,
-           Ins, Item);
-      C.Sensor :=
-        Selected (Sensor_Transition'First, Sensor_Transition'Last, Self,
-           Now, Ins, Item);
+      C.Motor := Selected_Motor (Self, Now, Ins, Item);
+      C.Sensor := Selected_Sensor (Self, Now, Ins, Item);
       if C.Motor = None and then C.Sensor = None then
-         C.Top :=
-           Selected (Top_Transition'First, Top_Transition'Last, Self, Now,
-              Ins, Item);
+         C.Top := Selected_Top (Self, Now, Ins, Item);
       end if;
       return C;
    end Choose;
@@ -90,22 +201,22 @@ is
       function Innermost (Self : Region) return Nodes is
         ((Motor =>
             (if Self.Started
-                and then Self.Place.Top = Infusion_States.Self_Test
+                and then Self.Configuration.Top = Infusion_States.Self_Test
                 then Node'Val
-                     (Infusion_States.Motor_Leaf'Pos (Self.Place.In_Motor)
-                      + 1)
+                     (Infusion_States.Motor_Leaf'Pos
+                        (Self.Configuration.In_Motor) + 1)
              else Nowhere),
           Sensor =>
             (if Self.Started
-                and then Self.Place.Top = Infusion_States.Self_Test
+                and then Self.Configuration.Top = Infusion_States.Self_Test
                 then Node'Val
-                     (Infusion_States.Sensor_Leaf'Pos (Self.Place.In_Sensor)
-                      + 3)
+                     (Infusion_States.Sensor_Leaf'Pos
+                        (Self.Configuration.In_Sensor) + 3)
              else Nowhere),
           Top =>
             (if Self.Started
                 then Node'Val
-                     (Infusion_States.Leaf'Pos (Self.Place.Top) + 5)
+                     (Infusion_States.Leaf'Pos (Self.Configuration.Top) + 5)
              else Nowhere)));
    end Chart;
 
@@ -114,8 +225,8 @@ is
    begin
       if Self.Started
          and then Visit = Self.Visits_Turning
-         and then Self.Place.Top = Infusion_States.Self_Test
-         and then Self.Place.In_Motor = Infusion_States.Turning
+         and then Self.Configuration.Top = Infusion_States.Self_Test
+         and then Self.Configuration.In_Motor = Infusion_States.Turning
          and then not Self.Done_In.Turning
       then
          Self.Done_In.Turning := True;
@@ -128,7 +239,7 @@ is
    begin
       if Self.Started
          and then Visit = Self.Visits_Filling
-         and then Self.Place.Top = Infusion_States.Filling
+         and then Self.Configuration.Top = Infusion_States.Filling
          and then not Self.Done_In.Filling
       then
          Self.Done_In.Filling := True;
@@ -171,7 +282,7 @@ is
             when 3 =>
                Now := Expiry_Of_Remind;
             when others =>
-               Deferrals.Take_Due (Self.Deferred, Self.Place, Item,
+               Deferrals.Take_Due (Self.Deferred, Self.Configuration, Item,
                   Released);
                Now :=
                  (if Released then To_Occurrence (Item) else Conditions);
@@ -185,8 +296,8 @@ is
      (if Chosen = Initial_Entry
          then not Self.Started and then Self.Data = Initial_Data
       else Self.Started
-         and then In_Source (Chosen, Self.Place)
-         and then Is_Safe (Self.Place, Self.Data)
+         and then In_Source (Chosen, Self.Configuration)
+         and then Is_Safe (Self.Configuration, Self.Data)
          and then Guards_Hold (Chosen, Self.Data, Ins, Item)) with Ghost;
    --  May it be fired? At first only the start may.
 
@@ -196,20 +307,21 @@ is
      (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
      (Self.Timers
-      = Timers_After (Before.Timers, Domain_Of (Chosen), Before.Place,
-           Self.Place)
+      = Timers_After (Before.Timers, Domain_Of (Chosen),
+           Before.Configuration, Self.Configuration)
       and then Self.Past
-        = Remembered (Domain_Of (Chosen), Before.Place, Before.Past)
+        = Remembered (Domain_Of (Chosen), Before.Configuration, Before.Past)
       and then Deferrals.Is_Changed (Before.Deferred, Self.Deferred,
-           Is_Deferral (Chosen), Item, Domain_Of (Chosen), Before.Place))
-   with Ghost;
+           Is_Deferral (Chosen), Item, Domain_Of (Chosen),
+           Before.Configuration)) with Ghost;
    --  Are time-outs, memory and kept events after it as declared?
 
    function Is_Fired
      (Before : Region; Self : Region; Item : Event; Chosen : Firing)
      return Boolean is
      (Self.Started
-      and then Self.Place = Target (Chosen, Before.Place, Before.Past)
+      and then Self.Configuration
+        = Target (Chosen, Before.Configuration, Before.Past)
       and then Is_Lasting (Before, Self, Item, Chosen)) with Ghost;
    --  Is the region after it as declared?
 
@@ -221,14 +333,14 @@ is
      Pre => Is_Ready (Self, Ins, Item, Chosen),
      Post =>
        Is_Fired (Self'Old, Self, Item, Chosen)
-       and then Is_Safe (Self.Place, Self.Data)
+       and then Is_Safe (Self.Configuration, Self.Data)
    is
       use type Chart.Nodes;
       use type Chart.Node;
 
       Active : Chart.Nodes := Chart.Innermost (Self) with Ghost;
       Active_At_First : constant Chart.Nodes := Active with Ghost;
-      Before : constant Infusion_States.Configuration := Self.Place;
+      Before : constant Infusion_States.Configuration := Self.Configuration;
       Past : constant Memory := Self.Past;
 
       function Moved
@@ -345,7 +457,7 @@ is
          Active.Motor :=
            Moved (Active.Motor, Chart.Nowhere, Chart.Motor_Good,
               Active.Top = Chart.Self_Test);
-         if Self.Place.In_Sensor = Infusion_States.Sensor_Good then
+         if Self.Configuration.In_Sensor = Infusion_States.Sensor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Motor_Good;
@@ -355,7 +467,7 @@ is
          Active.Sensor :=
            Moved (Active.Sensor, Chart.Nowhere, Chart.Sensor_Good,
               Active.Top = Chart.Self_Test);
-         if Self.Place.In_Motor = Infusion_States.Motor_Good then
+         if Self.Configuration.In_Motor = Infusion_States.Motor_Good then
             Self.Completed_Self_Test := True;
          end if;
       end Enter_Sensor_Good;
@@ -424,9 +536,10 @@ is
       end Enter_Silent;
    begin
       Self.Started := True;
-      Self.Place := Target (Chosen, Before, Past);
+      Self.Configuration := Target (Chosen, Before, Past);
       Self.Timers :=
-        Timers_After (Self.Timers, Domain_Of (Chosen), Before, Self.Place);
+        Timers_After (Self.Timers, Domain_Of (Chosen), Before,
+           Self.Configuration);
       Self.Past := Remembered (Domain_Of (Chosen), Before, Self.Past);
       Deferrals.Change (Self.Deferred, Is_Deferral (Chosen), Item,
          Domain_Of (Chosen), Before);
@@ -624,8 +737,8 @@ is
         Post =>
           Firings.Is_Added (Fired'Old, T, Fired)
           and then Self.Started
-          and then Segments_Left (Self.Place) = 0
-          and then Is_Safe (Self.Place, Self.Data)
+          and then Segments_Left (Self.Configuration) = 0
+          and then Is_Safe (Self.Configuration, Self.Data)
       is
          Before : constant Firings.List := Fired with Ghost;
          Segment : Selection;
@@ -637,9 +750,9 @@ is
               (Fired.Count = Before.Count + I
                and then Firings.Is_Added (Before, T, Fired)
                and then Self.Started
-               and then Segments_Left (Self.Place) <= 3 - I
-               and then Is_Safe (Self.Place, Self.Data));
-            if Segments_Left (Self.Place) = 0 then
+               and then Segments_Left (Self.Configuration) <= 3 - I
+               and then Is_Safe (Self.Configuration, Self.Data));
+            if Segments_Left (Self.Configuration) = 0 then
                exit;
             end if;
             Segment := Next_Segment (Self, Ins, Item);
@@ -664,7 +777,8 @@ is
                and then Is_Of_Choice (Fired, C, Motor_Transition'Last)
                and then (if C.Motor /= None
                      then Firings.Has (Fired, C.Motor)));
-            if C.Sensor /= None and then In_Source (C.Sensor, Self.Place)
+            if C.Sensor /= None
+               and then In_Source (C.Sensor, Self.Configuration)
             then
                Fire_Whole (C.Sensor);
             end if;
@@ -674,7 +788,8 @@ is
                and then (if C.Motor /= None
                      then Firings.Has (Fired, C.Motor)
                   elsif C.Sensor /= None then Firings.Has (Fired, C.Sensor)));
-            if C.Top /= None and then In_Source (C.Top, Self.Place) then
+            if C.Top /= None and then In_Source (C.Top, Self.Configuration)
+            then
                Fire_Whole (C.Top);
             end if;
          end if;

@@ -76,6 +76,105 @@ is
       Top    : Selection := None;
    end record;
 
+   function In_Source
+     (T : Transition; Configuration : Infusion_States.Configuration)
+     return Boolean is
+     (case T is
+        when Turned =>
+           Configuration.Top = Infusion_States.Self_Test
+           and then Configuration.In_Motor = Infusion_States.Turning,
+        when Heard =>
+           Configuration.Top = Infusion_States.Self_Test
+           and then Configuration.In_Sensor = Infusion_States.Listening,
+        when Loaded | Defer_New_Portion_In_Loading =>
+           Configuration.Top = Infusion_States.Loading,
+        when Change => Configuration.Top = Infusion_States.Maintaining,
+        when Filled_Up | Defer_New_Portion_In_Filling =>
+           Configuration.Top = Infusion_States.Filling,
+        when Beat | Enough => Configuration.Top in Infusion_States.Giving,
+        when Finished => Configuration.Top in Infusion_States.Running,
+        when Hush => Configuration.Top = Infusion_States.Sounding,
+        when Remind => Configuration.Top = Infusion_States.Silent,
+        when Restore_Where_It_Was | Default_Of_Where_It_Was =>
+           Configuration.Top = Infusion_States.Where_It_Was,
+        when Ready | Again | Defer_New_Portion_In_Self_Test
+           | Defer_New_Volume_In_Self_Test =>
+           Configuration.Top = Infusion_States.Self_Test,
+        when Order_Portion | Order_Volume | Start =>
+           Configuration.Top = Infusion_States.Programming,
+        when Stop | Lost | Trouble =>
+           Configuration.Top in Infusion_States.Infusing,
+        when Resume | Give_Up | Defer_New_Portion_In_Alarm =>
+           Configuration.Top in Infusion_States.Alarm,
+        when Go_On | Not_Yet =>
+           Configuration.Top = Infusion_States.May_Go_On) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   type Memory is record
+      Last_In_Infusing  : Infusion_States.Infusing :=
+        Infusion_States.Filling;
+      Known_In_Infusing : Boolean := False;
+   end record;
+
+   --  The last leaf left in each region that a history restores.
+   function Deep_Infusing (Past : Memory) return Infusion_States.Infusing is
+     (if Past.Known_In_Infusing
+         then (case Past.Last_In_Infusing is
+               when Infusion_States.Filling | Infusion_States.All_Given
+                  | Infusion_States.Where_It_Was =>
+                  Infusion_States.Filling,
+               when Infusion_States.Loading => Infusion_States.Loading,
+               when Infusion_States.Maintaining =>
+                  Infusion_States.Maintaining,
+               when Infusion_States.Trickling => Infusion_States.Trickling)
+      else Infusion_States.Filling);
+   --  The leaf that deep history enters in Infusing.
+
+   function Target
+     (T             : Firing;
+      Configuration : Infusion_States.Configuration;
+      Past          : Memory) return Infusion_States.Configuration is
+     (case T is
+        when Initial_Entry | Again =>
+           (Top => Infusion_States.Self_Test,
+            In_Sensor => Infusion_States.Listening,
+            In_Motor => Infusion_States.Turning),
+        when Turned =>
+           (Configuration with delta In_Motor => Infusion_States.Motor_Good),
+        when Heard =>
+           (Configuration with delta
+              In_Sensor => Infusion_States.Sensor_Good),
+        when Loaded | Change =>
+           (Configuration with delta Top => Infusion_States.Maintaining),
+        when Defer_New_Portion_In_Loading | Beat
+           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
+           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
+           | Defer_New_Portion_In_Alarm =>
+           Configuration,
+        when Filled_Up =>
+           (Configuration with delta Top => Infusion_States.Loading),
+        when Enough =>
+           (Configuration with delta Top => Infusion_States.All_Given),
+        when Finished =>
+           (Configuration with delta Top => Infusion_States.Trickling),
+        when Hush =>
+           (Configuration with delta Top => Infusion_States.Silent),
+        when Remind | Lost | Trouble | Not_Yet =>
+           (Configuration with delta Top => Infusion_States.Sounding),
+        when Restore_Where_It_Was =>
+           (Configuration with delta Top => Deep_Infusing (Past)),
+        when Default_Of_Where_It_Was | Start =>
+           (Configuration with delta Top => Infusion_States.Filling),
+        when Ready | Stop | Give_Up =>
+           (Configuration with delta Top => Infusion_States.Programming),
+        when Resume =>
+           (Configuration with delta Top => Infusion_States.May_Go_On),
+        when Go_On =>
+           (Configuration with delta Top => Infusion_States.Where_It_Was));
+   --  The leaves that each transition leads to; those of a composite are
+   --  its defaults.
+
    --  The data that this region alone writes.
    type Variables is record
       Portion : Infusion_System.Portion := 0;
@@ -91,13 +190,6 @@ is
       Trickle : Infusion_System.Portion;
       Line    : Pump.Line_View;
       Loading : Infusion_System.Volume;
-   end record;
-
-   --  What histories ask for: the last leaf left in a region, if any.
-   type Memory is record
-      Last_In_Infusing  : Infusion_States.Infusing :=
-        Infusion_States.Filling;
-      Known_In_Infusing : Boolean := False;
    end record;
 
    subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 3);
@@ -138,33 +230,36 @@ is
    function Name_Of (Item : Event) return Event_Name is (Item.Name);
 
    function Is_Deferred
-     (Name : Event_Name; Place : Infusion_States.Configuration)
+     (Name : Event_Name; Configuration : Infusion_States.Configuration)
      return Boolean is
      (case Name is
         when New_Portion =>
-           Place.Top = Infusion_States.Self_Test
-           or else Place.Top = Infusion_States.Filling
-           or else Place.Top = Infusion_States.Loading
-           or else Place.Top in Infusion_States.Alarm,
-        when New_Volume => Place.Top = Infusion_States.Self_Test,
+           Configuration.Top = Infusion_States.Self_Test
+           or else Configuration.Top = Infusion_States.Filling
+           or else Configuration.Top = Infusion_States.Loading
+           or else Configuration.Top in Infusion_States.Alarm,
+        when New_Volume => Configuration.Top = Infusion_States.Self_Test,
         when others => False);
    --  Does an active state defer it?
 
    function Is_Freed
-     (Name : Event_Name; D : Domain; Place : Infusion_States.Configuration)
-     return Boolean is
+     (Name          : Event_Name;
+      D             : Domain;
+      Configuration : Infusion_States.Configuration) return Boolean is
      (case Name is
         when New_Portion =>
-           (D = Everything and then Place.Top = Infusion_States.Self_Test)
+           (D = Everything
+            and then Configuration.Top = Infusion_States.Self_Test)
            or else (D in Inside_Running | Inside_Infusing | Everything
-              and then Place.Top = Infusion_States.Filling)
+              and then Configuration.Top = Infusion_States.Filling)
            or else (D in Inside_Giving | Inside_Running | Inside_Infusing
                 | Everything
-              and then Place.Top = Infusion_States.Loading)
+              and then Configuration.Top = Infusion_States.Loading)
            or else (D = Everything
-              and then Place.Top in Infusion_States.Alarm),
+              and then Configuration.Top in Infusion_States.Alarm),
         when New_Volume =>
-           D = Everything and then Place.Top = Infusion_States.Self_Test,
+           D = Everything
+           and then Configuration.Top = Infusion_States.Self_Test,
         when others => False);
    --  Is a state exited that defers it? Then it is due, whatever is
    --  entered.
@@ -188,7 +283,7 @@ is
    --  The region's own state.
    type Region is record
       Started             : Boolean := False;
-      Place               : Infusion_States.Configuration;
+      Configuration       : Infusion_States.Configuration;
       Past                : Memory;
       Timers              : Time_Outs;
       Completed_Self_Test : Boolean := False;
@@ -213,45 +308,13 @@ is
       Most_Segments => 2,
       Capacity => 9);
 
-   function In_Source
-     (T : Transition; Place : Infusion_States.Configuration) return Boolean is
-     (case T is
-        when Turned =>
-           Place.Top = Infusion_States.Self_Test
-           and then Place.In_Motor = Infusion_States.Turning,
-        when Heard =>
-           Place.Top = Infusion_States.Self_Test
-           and then Place.In_Sensor = Infusion_States.Listening,
-        when Loaded | Defer_New_Portion_In_Loading =>
-           Place.Top = Infusion_States.Loading,
-        when Change => Place.Top = Infusion_States.Maintaining,
-        when Filled_Up | Defer_New_Portion_In_Filling =>
-           Place.Top = Infusion_States.Filling,
-        when Beat | Enough => Place.Top in Infusion_States.Giving,
-        when Finished => Place.Top in Infusion_States.Running,
-        when Hush => Place.Top = Infusion_States.Sounding,
-        when Remind => Place.Top = Infusion_States.Silent,
-        when Restore_Where_It_Was | Default_Of_Where_It_Was =>
-           Place.Top = Infusion_States.Where_It_Was,
-        when Ready | Again | Defer_New_Portion_In_Self_Test
-           | Defer_New_Volume_In_Self_Test =>
-           Place.Top = Infusion_States.Self_Test,
-        when Order_Portion | Order_Volume | Start =>
-           Place.Top = Infusion_States.Programming,
-        when Stop | Lost | Trouble => Place.Top in Infusion_States.Infusing,
-        when Resume | Give_Up | Defer_New_Portion_In_Alarm =>
-           Place.Top in Infusion_States.Alarm,
-        when Go_On | Not_Yet => Place.Top = Infusion_States.May_Go_On);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T    : Transition;
       Self : Region;
       Now  : Occurrence;
       Ins  : Inputs;
       Item : Event) return Boolean is
-     (In_Source (T, Self.Place)
+     (In_Source (T, Self.Configuration)
       and then (case T is
            when Turned => Now = Completion_Of_Turning,
            when Heard =>
@@ -294,56 +357,8 @@ is
               Now = Passing
               and then Ins.Line.State = Ravenchart.Fresh
               and then Ins.Line.Value = Infusion_System.Clear,
-           when Not_Yet => Now = Passing));
+           when Not_Yet => Now = Passing)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Deep_Infusing (Past : Memory) return Infusion_States.Infusing is
-     (if Past.Known_In_Infusing
-         then (case Past.Last_In_Infusing is
-               when Infusion_States.Filling | Infusion_States.All_Given
-                  | Infusion_States.Where_It_Was =>
-                  Infusion_States.Filling,
-               when Infusion_States.Loading => Infusion_States.Loading,
-               when Infusion_States.Maintaining =>
-                  Infusion_States.Maintaining,
-               when Infusion_States.Trickling => Infusion_States.Trickling)
-      else Infusion_States.Filling);
-   --  The leaf that deep history enters in Infusing.
-
-   function Target
-     (T : Firing; Place : Infusion_States.Configuration; Past : Memory)
-     return Infusion_States.Configuration is
-     (case T is
-        when Initial_Entry | Again =>
-           (Top => Infusion_States.Self_Test,
-            In_Sensor => Infusion_States.Listening,
-            In_Motor => Infusion_States.Turning),
-        when Turned =>
-           (Place with delta In_Motor => Infusion_States.Motor_Good),
-        when Heard =>
-           (Place with delta In_Sensor => Infusion_States.Sensor_Good),
-        when Loaded | Change =>
-           (Place with delta Top => Infusion_States.Maintaining),
-        when Defer_New_Portion_In_Loading | Beat
-           | Defer_New_Portion_In_Filling | Order_Portion | Order_Volume
-           | Defer_New_Portion_In_Self_Test | Defer_New_Volume_In_Self_Test
-           | Defer_New_Portion_In_Alarm =>
-           Place,
-        when Filled_Up => (Place with delta Top => Infusion_States.Loading),
-        when Enough => (Place with delta Top => Infusion_States.All_Given),
-        when Finished => (Place with delta Top => Infusion_States.Trickling),
-        when Hush => (Place with delta Top => Infusion_States.Silent),
-        when Remind | Lost | Trouble | Not_Yet =>
-           (Place with delta Top => Infusion_States.Sounding),
-        when Restore_Where_It_Was =>
-           (Place with delta Top => Deep_Infusing (Past)),
-        when Default_Of_Where_It_Was | Start =>
-           (Place with delta Top => Infusion_States.Filling),
-        when Ready | Stop | Give_Up =>
-           (Place with delta Top => Infusion_States.Programming),
-        when Resume => (Place with delta Top => Infusion_States.May_Go_On),
-        when Go_On => (Place with delta Top => Infusion_States.Where_It_Was));
-   --  The leaves it leads to; those of a composite are its defaults.
 
    function Timers_After
      (Timers : Time_Outs;
@@ -371,20 +386,21 @@ is
    --  entered.
 
    function Remembered
-     (D : Domain; Place : Infusion_States.Configuration; Past : Memory)
-     return Memory is
+     (D             : Domain;
+      Configuration : Infusion_States.Configuration;
+      Past          : Memory) return Memory is
      ((Last_In_Infusing =>
          (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
-             and then Place.Top in Infusion_States.Infusing
-             and then Place.Top /= Infusion_States.Where_It_Was
-             then Place.Top
+             and then Configuration.Top in Infusion_States.Infusing
+             and then Configuration.Top /= Infusion_States.Where_It_Was
+             then Configuration.Top
           else Past.Last_In_Infusing),
        Known_In_Infusing =>
          (if D in Inside_Running | Inside_Giving | Inside_Infusing
                | Everything
-             and then Place.Top in Infusion_States.Infusing
-             and then Place.Top /= Infusion_States.Where_It_Was
+             and then Configuration.Top in Infusion_States.Infusing
+             and then Configuration.Top /= Infusion_States.Where_It_Was
              then True
           else Past.Known_In_Infusing)));
    --  What histories know then: the leaf that was left, nothing after a
@@ -423,9 +439,9 @@ is
    --  Each lane's first; none where a lane inside it has one.
 
    function Segments_Left
-     (Place : Infusion_States.Configuration) return Natural is
-     (if Place.Top = Infusion_States.May_Go_On then 2
-      elsif Place.Top = Infusion_States.Where_It_Was then 1
+     (Configuration : Infusion_States.Configuration) return Natural is
+     (if Configuration.Top = Infusion_States.May_Go_On then 2
+      elsif Configuration.Top = Infusion_States.Where_It_Was then 1
       else 0);
    --  How many segments follow at most; none but in a choice or history.
 
@@ -459,45 +475,48 @@ is
    Initial_Data : constant Variables := (others => <>);
 
    function Never_Alarm_While_Running
-     (Place : Infusion_States.Configuration; Data : Variables)
+     (Configuration : Infusion_States.Configuration; Data : Variables)
      return Boolean is
-     (not (Place.Top in Infusion_States.Alarm and then Data.Speed > 0));
+     (not (Configuration.Top in Infusion_States.Alarm
+       and then Data.Speed > 0));
    --  [Pump.alarm_while_running] the condition of `never` is false.
 
    function Never_Alarm_Without_Sound
-     (Place : Infusion_States.Configuration; Data : Variables)
+     (Configuration : Infusion_States.Configuration; Data : Variables)
      return Boolean is
-     (not (Place.Top = Infusion_States.Sounding and then not Data.Buzzer));
+     (not (Configuration.Top = Infusion_States.Sounding
+       and then not Data.Buzzer));
    --  [Pump.alarm_without_sound] the condition of `never` is false.
 
    function Never_Overdose
-     (Place : Infusion_States.Configuration; Data : Variables)
+     (Configuration : Infusion_States.Configuration; Data : Variables)
      return Boolean is
-     (not (not (Place.Top = Infusion_States.Programming)
+     (not (not (Configuration.Top = Infusion_States.Programming)
        and then Data.Given > Data.Volume));
    --  [Pump.overdose] the condition of `never` is false.
 
    function Data_Are_Known
-     (Place : Infusion_States.Configuration; Data : Variables)
+     (Configuration : Infusion_States.Configuration; Data : Variables)
      return Boolean is
-     (if Place.Top = Infusion_States.May_Go_On then Data.Speed = 0);
+     (if Configuration.Top = Infusion_States.May_Go_On then Data.Speed = 0);
    --  What holds of data while a leaf is active: without it a transition
    --  might break an invariant.
 
    function Is_Safe
-     (Place : Infusion_States.Configuration; Data : Variables)
+     (Configuration : Infusion_States.Configuration; Data : Variables)
      return Boolean is
-     (Never_Alarm_While_Running (Place, Data)
-      and then Never_Alarm_Without_Sound (Place, Data)
-      and then Never_Overdose (Place, Data)
-      and then Data_Are_Known (Place, Data));
+     (Never_Alarm_While_Running (Configuration, Data)
+      and then Never_Alarm_Without_Sound (Configuration, Data)
+      and then Never_Overdose (Configuration, Data)
+      and then Data_Are_Known (Configuration, Data));
    --  Each transition and each segment keeps it.
 
    function Is_Kept (Self : Region) return Boolean is
-     (Never_Alarm_While_Running (Self.Place, Self.Data)
-      and then Never_Alarm_Without_Sound (Self.Place, Self.Data)
-      and then Never_Overdose (Self.Place, Self.Data)
-      and then (if Self.Started then Data_Are_Known (Self.Place, Self.Data)
+     (Never_Alarm_While_Running (Self.Configuration, Self.Data)
+      and then Never_Alarm_Without_Sound (Self.Configuration, Self.Data)
+      and then Never_Overdose (Self.Configuration, Self.Data)
+      and then (if Self.Started
+            then Data_Are_Known (Self.Configuration, Self.Data)
          else Self.Data = Initial_Data));
    --  The region between steps; before the first one its data are initial.
 
@@ -522,7 +541,7 @@ is
    procedure Tick (Self : in out Region)
    with
      Post =>
-       (Self.Place = Self.Place'Old
+       (Self.Configuration = Self.Configuration'Old
         and then Self.Started = Self.Started'Old
         and then Self.Data = Self.Data'Old)
        and then (for all I in Self.Timers'Range =>
@@ -534,7 +553,7 @@ is
      (Self : in out Region; Visit : Ravenchart.Event_Count)
    with
      Post =>
-       Self.Place = Self.Place'Old
+       Self.Configuration = Self.Configuration'Old
        and then Self.Started = Self.Started'Old
        and then Self.Data = Self.Data'Old;
    --  A do activity of Turning was done in that visit.
@@ -543,7 +562,7 @@ is
      (Self : in out Region; Visit : Ravenchart.Event_Count)
    with
      Post =>
-       Self.Place = Self.Place'Old
+       Self.Configuration = Self.Configuration'Old
        and then Self.Started = Self.Started'Old
        and then Self.Data = Self.Data'Old;
    --  A do activity of Filling was done in that visit.
@@ -563,7 +582,7 @@ is
      (Self : in out Region; Now : out Occurrence; Item : out Event)
    with
      Post =>
-       (Self.Place = Self.Place'Old
+       (Self.Configuration = Self.Configuration'Old
         and then Self.Started = Self.Started'Old
         and then Self.Data = Self.Data'Old)
        and then Self.Completed_Self_Test
@@ -596,9 +615,10 @@ is
                  elsif (for some I in Self.Timers'Range =>
                         Ravenchart.Timers.Is_Due (Self.Timers'Old (I)))
                     then Now in Expiry_Of_Again .. Expiry_Of_Remind
-                 elsif Deferrals.Due (Self.Deferred'Old, Self.Place) > 0
-                    then Deferrals.Is_Taken (Self.Deferred'Old, Self.Place,
-                          Item, Self.Deferred)
+                 elsif Deferrals.Due (Self.Deferred'Old, Self.Configuration)
+                    > 0
+                    then Deferrals.Is_Taken (Self.Deferred'Old,
+                          Self.Configuration, Item, Self.Deferred)
                        and then Now = To_Occurrence (Item)
                  else Now = Conditions));
    --  Its start, a completion, the time-out that is due or a deferred event
@@ -616,9 +636,10 @@ is
      Post =>
        Self.Started
        and then Is_Kept (Self)
-       and then (if Fired.Count = 0 then Self.Place = Self.Place'Old)
-       and then (if Segments_Left (Self.Place'Old) = 0
-             then Segments_Left (Self.Place) = 0)
+       and then (if Fired.Count = 0
+             then Self.Configuration = Self.Configuration'Old)
+       and then (if Segments_Left (Self.Configuration'Old) = 0
+             then Segments_Left (Self.Configuration) = 0)
        and then ((Now = Start_Of_Region
            and Firings.Is_Only (Fired, Initial_Entry))
           or (Now /= Start_Of_Region

@@ -22,6 +22,21 @@ is
    subtype Firing is Selection range Initial_Entry .. Pressed;
    subtype Transition is Selection range Pressed .. Pressed;
 
+   function In_Source
+     (T : Transition; Leaf : Keys_States.Leaf) return Boolean is
+     (case T is
+        when Pressed => Leaf = Keys_States.Listening) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Keys_States.Leaf) return Keys_States.Leaf is
+     (case T is
+        when Initial_Entry => Keys_States.Listening,
+        when Pressed => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What one step sends and raises.
    type Outbox is record
       Raised : Event_Lists.List;
@@ -33,26 +48,12 @@ is
       Leaf    : Keys_States.Leaf := Keys_States.Listening;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Keys_States.Leaf) return Boolean is
-     (case T is
-        when Pressed => Leaf = Keys_States.Listening);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
-           when Pressed => Now = On_Pressed));
+           when Pressed => Now = On_Pressed)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Keys_States.Leaf) return Keys_States.Leaf is
-     (case T is
-        when Initial_Entry => Keys_States.Listening,
-        when Pressed => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is

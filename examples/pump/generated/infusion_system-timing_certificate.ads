@@ -45,24 +45,24 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: control in bed.line.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
-   Ward_Receive_Budget : constant := 20_000;
+   Ward_Receive_Wcet : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_C : constant := Ward_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Ward_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [control] released every T. B: main in health. C: what every release
-   --  executes; C_2: rows of every 2th release, C_4: rows of every 4th
-   --  release.
+   --  executes; C_2: rows of one release in 2, C_4: rows of one release in
+   --  4.
    Control_Priority : constant := System.Default_Priority + 1;
-   Bed_Ports_Budget : constant := 100_000;
-   Bed_Keys_Budget : constant := 50_000;
-   Bed_Infusion_Budget : constant := 300_000;
-   Bed_Turn_Budget : constant := 50_000;
-   Bed_Fill_Budget : constant := 50_000;
-   Bed_Drive_Budget : constant := 50_000;
-   Bed_Show_Budget : constant := 50_000;
+   Bed_Ports_Wcet : constant := 100_000;
+   Bed_Keys_Wcet : constant := 50_000;
+   Bed_Infusion_Wcet : constant := 300_000;
+   Bed_Turn_Wcet : constant := 50_000;
+   Bed_Fill_Wcet : constant := 50_000;
+   Bed_Drive_Wcet : constant := 50_000;
+   Bed_Show_Wcet : constant := 50_000;
    Control_T : constant := 50_000_000;
    Control_D : constant := 50_000_000;
    Bed_Ports_Divisor : constant := 1;
@@ -97,50 +97,50 @@ is
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
-     Bed_Ports_Budget + Bed_Keys_Budget + Bed_Infusion_Budget
-     + Bed_Drive_Budget + 2 * Board_Context_Switch;
-   Control_C_2 : constant := Bed_Turn_Budget + Bed_Fill_Budget;
-   Control_C_4 : constant := Bed_Show_Budget;
+     Bed_Ports_Wcet + Bed_Keys_Wcet + Bed_Infusion_Wcet + Bed_Drive_Wcet
+     + 2 * Board_Context_Switch;
+   Control_C_2 : constant := Bed_Turn_Wcet + Bed_Fill_Wcet;
+   Control_C_4 : constant := Bed_Show_Wcet;
    Control_B : constant := Board_Critical_Section;
 
    --  [ward.driver_rx.line] the driver, released by ward.line. B: control
    --  in ward.transmit.
-   Ward_Driver_Rx_Line_Budget : constant := 20_000;
+   Ward_Driver_Rx_Line_Wcet : constant := 20_000;
    Ward_Driver_Rx_Line_T : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_D : constant := 1_000_000_000;
    Ward_Driver_Rx_Line_J : constant := Ward_Line_R;
    Ward_Driver_Rx_Line_C : constant :=
-     Ward_Driver_Rx_Line_Budget + 2 * Board_Context_Switch;
+     Ward_Driver_Rx_Line_Wcet + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Line_B : constant := Board_Critical_Section;
 
    --  [ward.driver_tx.motor] the driver, released by control. B: control in
    --  ward.transmit.
-   Ward_Driver_Tx_Motor_Budget : constant := 20_000;
+   Ward_Driver_Tx_Motor_Wcet : constant := 20_000;
    Ward_Driver_Tx_Motor_T : constant := 50_000_000;
    Ward_Driver_Tx_Motor_D : constant := 50_000_000;
    Ward_Driver_Tx_Motor_J : constant := Control_R;
    Ward_Driver_Tx_Motor_C : constant :=
-     Ward_Driver_Tx_Motor_Budget + 2 * Board_Context_Switch;
+     Ward_Driver_Tx_Motor_Wcet + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Motor_B : constant := Board_Critical_Section;
 
    --  [ward.driver_rx.panel] the driver, released by ward.panel. B: control
    --  in ward.transmit.
-   Ward_Driver_Rx_Panel_Budget : constant := 20_000;
+   Ward_Driver_Rx_Panel_Wcet : constant := 20_000;
    Ward_Driver_Rx_Panel_T : constant := 50_000_000;
    Ward_Driver_Rx_Panel_D : constant := 50_000_000;
    Ward_Driver_Rx_Panel_J : constant := Ward_Panel_R;
    Ward_Driver_Rx_Panel_C : constant :=
-     Ward_Driver_Rx_Panel_Budget + 2 * Board_Context_Switch;
+     Ward_Driver_Rx_Panel_Wcet + 2 * Board_Context_Switch;
    Ward_Driver_Rx_Panel_B : constant := Board_Critical_Section;
 
    --  [ward.driver_tx.display] the driver, released by control. B: control
    --  in ward.transmit.
-   Ward_Driver_Tx_Display_Budget : constant := 20_000;
+   Ward_Driver_Tx_Display_Wcet : constant := 20_000;
    Ward_Driver_Tx_Display_T : constant := 200_000_000;
    Ward_Driver_Tx_Display_D : constant := 200_000_000;
    Ward_Driver_Tx_Display_J : constant := Control_R;
    Ward_Driver_Tx_Display_C : constant :=
-     Ward_Driver_Tx_Display_Budget + 2 * Board_Context_Switch;
+     Ward_Driver_Tx_Display_Wcet + 2 * Board_Context_Switch;
    Ward_Driver_Tx_Display_B : constant := Board_Critical_Section;
 
    function Ward_Driver_Rx_Line_Up (W : Window) return Time is

@@ -9,15 +9,60 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now)));
-      end loop;
-      return None;
+      case Now is
+         when On_E =>
+            return (if Enabled (S_E, Self, Now) then S_E else None);
+         when On_I =>
+            return
+              (if Enabled (S1_I, Self, Now) then S1_I
+               elsif Enabled (S2_I, Self, Now) then S2_I
+               elsif Enabled (S_I, Self, Now) then S_I
+               else None);
+         when On_A =>
+            return
+              (if Enabled (S21_A, Self, Now) then S21_A
+               elsif Enabled (S1_A, Self, Now) then S1_A
+               else None);
+         when On_B =>
+            return
+              (if Enabled (S21_B, Self, Now) then S21_B
+               elsif Enabled (S1_B, Self, Now) then S1_B
+               else None);
+         when On_C =>
+            return
+              (if Enabled (S1_C, Self, Now) then S1_C
+               elsif Enabled (S2_C, Self, Now) then S2_C
+               else None);
+         when On_D =>
+            return
+              (if Enabled (S211_D, Self, Now) then S211_D
+               elsif Enabled (S11_D, Self, Now) then S11_D
+               elsif Enabled (S1_D, Self, Now) then S1_D
+               else None);
+         when On_F =>
+            return
+              (if Enabled (S1_F, Self, Now) then S1_F
+               elsif Enabled (S2_F, Self, Now) then S2_F
+               else None);
+         when On_G =>
+            return
+              (if Enabled (S11_G, Self, Now) then S11_G
+               elsif Enabled (S21_G, Self, Now) then S21_G
+               else None);
+         when On_H =>
+            return
+              (if Enabled (S211_H, Self, Now) then S211_H
+               elsif Enabled (S11_H, Self, Now) then S11_H
+               else None);
+         when Passing =>
+            return
+              (if Enabled (S21_Init, Self, Now) then S21_Init
+               elsif Enabled (S1_Init, Self, Now) then S1_Init
+               elsif Enabled (S_Init, Self, Now) then S_Init
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    function Next_Segment (Self : Region) return Transition
@@ -37,7 +82,10 @@ is
       pragma Assert
         ((if Self.Leaf = Chart_States.S21_Init
              then Enabled (S21_Init, Self, Passing)));
-      return Selected (Self, Passing);
+      return
+        (if Enabled (S21_Init, Self, Passing) then S21_Init
+         elsif Enabled (S1_Init, Self, Passing) then S1_Init
+         else S_Init);
    end Next_Segment;
 
    package Chart

@@ -47,6 +47,37 @@ is
    subtype Firing is Selection range Initial_Entry .. S_I;
    subtype Transition is Selection range S211_D .. S_I;
 
+   function In_Source
+     (T : Transition; Leaf : Chart_States.Leaf) return Boolean is
+     (case T is
+        when S211_D | S211_H => Leaf = Chart_States.S211,
+        when S21_Init => Leaf = Chart_States.S21_Init,
+        when S11_D | S11_G | S11_H => Leaf = Chart_States.S11,
+        when S21_A | S21_B | S21_G => Leaf in Chart_States.S21,
+        when S1_Init => Leaf = Chart_States.S1_Init,
+        when S1_A | S1_B | S1_C | S1_D | S1_F | S1_I =>
+           Leaf in Chart_States.S1,
+        when S2_C | S2_F | S2_I => Leaf in Chart_States.S2,
+        when S_Init => Leaf = Chart_States.S_Init,
+        when S_E | S_I => Leaf in Chart_States.S) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Chart_States.Leaf) return Chart_States.Leaf is
+     (case T is
+        when Initial_Entry | S21_Init | S11_G | S21_A | S21_B | S1_C
+           | S1_F =>
+           Chart_States.S211,
+        when S211_D => Chart_States.S21_Init,
+        when S211_H | S11_H | S1_D => Chart_States.S_Init,
+        when S11_D => Chart_States.S1_Init,
+        when S21_G | S1_Init | S1_A | S1_B | S2_C | S2_F | S_Init | S_E =>
+           Chart_States.S11,
+        when S1_I | S2_I | S_I => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Foo       : Boolean := True;
@@ -70,22 +101,6 @@ is
       Is_Segment => Is_Segment,
       Most_Segments => 1,
       Capacity => 2);
-
-   function In_Source
-     (T : Transition; Leaf : Chart_States.Leaf) return Boolean is
-     (case T is
-        when S211_D | S211_H => Leaf = Chart_States.S211,
-        when S21_Init => Leaf = Chart_States.S21_Init,
-        when S11_D | S11_G | S11_H => Leaf = Chart_States.S11,
-        when S21_A | S21_B | S21_G => Leaf in Chart_States.S21,
-        when S1_Init => Leaf = Chart_States.S1_Init,
-        when S1_A | S1_B | S1_C | S1_D | S1_F | S1_I =>
-           Leaf in Chart_States.S1,
-        when S2_C | S2_F | S2_I => Leaf in Chart_States.S2,
-        when S_Init => Leaf = Chart_States.S_Init,
-        when S_E | S_I => Leaf in Chart_States.S);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence) return Boolean is
@@ -112,22 +127,9 @@ is
            when S2_I => Now = On_I and then not Self.Data.Foo,
            when S_Init => Now = Passing,
            when S_E => Now = On_E,
-           when S_I => Now = On_I and then Self.Data.Foo));
+           when S_I => Now = On_I and then Self.Data.Foo))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Chart_States.Leaf) return Chart_States.Leaf is
-     (case T is
-        when Initial_Entry | S21_Init | S11_G | S21_A | S21_B | S1_C
-           | S1_F =>
-           Chart_States.S211,
-        when S211_D => Chart_States.S21_Init,
-        when S211_H | S11_H | S1_D => Chart_States.S_Init,
-        when S11_D => Chart_States.S1_Init,
-        when S21_G | S1_Init | S1_A | S1_B | S2_C | S2_F | S_Init | S_E =>
-           Chart_States.S11,
-        when S1_I | S2_I | S_I => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is
@@ -152,7 +154,7 @@ is
         when A => On_A,
         when B => On_B,
         when C => On_C,
-        when D => On_D,
+        when Qhsm.D => On_D,
         when F => On_F,
         when G => On_G,
         when H => On_H,

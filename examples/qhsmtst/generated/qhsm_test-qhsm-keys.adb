@@ -9,15 +9,12 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now)));
-      end loop;
-      return None;
+      case Now is
+         when On_Pressed =>
+            return (if Enabled (Pressed, Self, Now) then Pressed else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

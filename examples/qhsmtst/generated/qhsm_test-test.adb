@@ -88,36 +88,13 @@ is
       case Item.Name is
          when Qhsm.Pressed =>
             Keys_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Test_Pressed, 0);
-         when Qhsm.A =>
+         when Qhsm.A | Qhsm.B | Qhsm.C | Qhsm.D | Qhsm.E | Qhsm.F | Qhsm.G
+            | Qhsm.H | Qhsm.I =>
             Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_A, 0);
-         when Qhsm.B =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_B, 0);
-         when Qhsm.C =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_C, 0);
-         when Qhsm.D =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_D, 0);
-         when Qhsm.E =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_E, 0);
-         when Qhsm.F =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_F, 0);
-         when Qhsm.G =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_G, 0);
-         when Qhsm.H =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_H, 0);
-         when Qhsm.I =>
-            Chart_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised, Elements.Test_I, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Test_Pressed
+         + Ravenchart.Element_Id (Qhsm.Event_Name'Pos (Item.Name)), 0);
    end Offer;
 
    procedure Read_Chart_Fill (Found : out Ravenchart.Queueing.Fill) is

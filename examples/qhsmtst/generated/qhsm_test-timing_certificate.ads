@@ -39,19 +39,18 @@ is
    --  [reception] released by arrivals, no closer than T; it may wait for T
    --  to be over as well. B: charts in test.key.mailbox.
    Reception_Priority : constant := System.Default_Priority + 2;
-   Panel_Receive_Budget : constant := 20_000;
+   Panel_Receive_Wcet : constant := 20_000;
    Reception_T : constant := 1_000_000;
    Reception_D : constant := 1_000_000;
    Reception_J : constant := 0;
-   Reception_C : constant :=
-     Panel_Receive_Budget + 4 * Board_Context_Switch;
+   Reception_C : constant := Panel_Receive_Wcet + 4 * Board_Context_Switch;
    Reception_B : constant := Board_Critical_Section;
 
    --  [charts] released every T. B: main in health.
    Charts_Priority : constant := System.Default_Priority + 1;
-   Test_Ports_Budget : constant := 50_000;
-   Test_Keys_Budget : constant := 50_000;
-   Test_Chart_Budget : constant := 100_000;
+   Test_Ports_Wcet : constant := 50_000;
+   Test_Keys_Wcet : constant := 50_000;
+   Test_Chart_Wcet : constant := 100_000;
    Charts_T : constant := 10_000_000;
    Charts_D : constant := 10_000_000;
    Charts_Divisor : constant := 1;
@@ -60,18 +59,18 @@ is
       "charts must keep divisors and phases of its rows");
    Charts_J : constant := 0;
    Charts_C : constant :=
-     Test_Ports_Budget + Test_Keys_Budget + Test_Chart_Budget
+     Test_Ports_Wcet + Test_Keys_Wcet + Test_Chart_Wcet
      + 2 * Board_Context_Switch;
    Charts_B : constant := Board_Critical_Section;
 
    --  [panel.driver_rx.key] the driver, released by panel.key. B: reception
    --  in panel.receive.
-   Panel_Driver_Rx_Key_Budget : constant := 20_000;
+   Panel_Driver_Rx_Key_Wcet : constant := 20_000;
    Panel_Driver_Rx_Key_T : constant := 10_000_000;
    Panel_Driver_Rx_Key_D : constant := 10_000_000;
    Panel_Driver_Rx_Key_J : constant := Panel_Key_R;
    Panel_Driver_Rx_Key_C : constant :=
-     Panel_Driver_Rx_Key_Budget + 2 * Board_Context_Switch;
+     Panel_Driver_Rx_Key_Wcet + 2 * Board_Context_Switch;
    Panel_Driver_Rx_Key_B : constant := Board_Critical_Section;
 
    function Panel_Driver_Rx_Key_Up (W : Window) return Time is

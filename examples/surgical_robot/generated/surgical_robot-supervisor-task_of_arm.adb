@@ -10,15 +10,21 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when Expiry_Of_Begin_Task =>
+            return
+              (if Enabled (Begin_Task, Self, Now, Ins) then Begin_Task
+               else None);
+         when Expiry_Of_Too_Late =>
+            return
+              (if Enabled (Too_Late, Self, Now, Ins) then Too_Late
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (There, Self, Now, Ins) then There else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -27,6 +27,24 @@ is
    subtype Firing is Selection range Initial_Entry .. Too_Late;
    subtype Transition is Selection range Begin_Task .. Too_Late;
 
+   function In_Source
+     (T : Transition; Leaf : Task_Of_Arm_States.Leaf) return Boolean is
+     (case T is
+        when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
+        when There | Too_Late => Leaf = Task_Of_Arm_States.Reaching)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Task_Of_Arm_States.Leaf is
+     (case T is
+        when Initial_Entry => Task_Of_Arm_States.Parked,
+        when Begin_Task => Task_Of_Arm_States.Reaching,
+        when There => Task_Of_Arm_States.Holding,
+        when Too_Late => Task_Of_Arm_States.Gave_Up);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Get_Position : Surgical_Robot.Angle_X4;
@@ -60,14 +78,6 @@ is
       Timers  : Time_Outs;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Task_Of_Arm_States.Leaf) return Boolean is
-     (case T is
-        when Begin_Task => Leaf = Task_Of_Arm_States.Parked,
-        when There | Too_Late => Leaf = Task_Of_Arm_States.Reaching);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
      return Boolean is
@@ -76,16 +86,8 @@ is
            when Begin_Task => Now = Expiry_Of_Begin_Task,
            when There =>
               Now = Conditions and then Ins.Get_Position.Axis_1 >= 280,
-           when Too_Late => Now = Expiry_Of_Too_Late));
+           when Too_Late => Now = Expiry_Of_Too_Late)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Task_Of_Arm_States.Leaf is
-     (case T is
-        when Initial_Entry => Task_Of_Arm_States.Parked,
-        when Begin_Task => Task_Of_Arm_States.Reaching,
-        when There => Task_Of_Arm_States.Holding,
-        when Too_Late => Task_Of_Arm_States.Gave_Up);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -37,9 +37,9 @@ is
 
    --  [servo_loop] released every T. B: main in Left.
    Servo_Loop_Priority : constant := System.Default_Priority + 2;
-   Servo_1_Take_Orders_Budget : constant := 50_000;
-   Servo_1_Differ_Budget : constant := 54_000;
-   Servo_1_Control_Budget : constant := 146_000;
+   Servo_1_Take_Orders_Wcet : constant := 50_000;
+   Servo_1_Differ_Wcet : constant := 54_000;
+   Servo_1_Control_Wcet : constant := 146_000;
    Servo_Loop_T : constant := 5_000_000;
    Servo_Loop_D : constant := 5_000_000;
    Servo_Loop_Divisor : constant := 1;
@@ -49,13 +49,13 @@ is
       "servo_loop must keep divisors and phases of its rows");
    Servo_Loop_J : constant := 0;
    Servo_Loop_C : constant :=
-     Servo_1_Take_Orders_Budget + Servo_1_Differ_Budget
-     + Servo_1_Control_Budget + 2 * Board_Context_Switch;
+     Servo_1_Take_Orders_Wcet + Servo_1_Differ_Wcet + Servo_1_Control_Wcet
+     + 2 * Board_Context_Switch;
    Servo_Loop_B : constant := Left_Section;
 
    --  [supervision] released every T. B: main in Left.
    Supervision_Priority : constant := System.Default_Priority + 1;
-   Supervisor_1_Task_Of_Arm_Budget : constant := 300_000;
+   Supervisor_1_Task_Of_Arm_Wcet : constant := 300_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_Divisor : constant := 1;
@@ -65,17 +65,17 @@ is
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=
-     Supervisor_1_Task_Of_Arm_Budget + 2 * Board_Context_Switch;
+     Supervisor_1_Task_Of_Arm_Wcet + 2 * Board_Context_Switch;
    Supervision_B : constant := Left_Section;
 
    --  [board.supervisor] released every T. B: servo_loop in Left.
    Board_Supervisor_Priority : constant := System.Default_Priority + 3;
-   Board_Supervisor_Budget : constant := 50_000;
+   Board_Supervisor_Wcet : constant := 50_000;
    Board_Supervisor_T : constant := 5_000_000;
    Board_Supervisor_D : constant := 5_000_000;
    Board_Supervisor_J : constant := 0;
    Board_Supervisor_C : constant :=
-     Board_Supervisor_Budget + 2 * Board_Context_Switch;
+     Board_Supervisor_Wcet + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Left_Section;
 
    function Board_Supervisor_Up (W : Window) return Time is

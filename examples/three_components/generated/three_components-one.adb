@@ -96,13 +96,12 @@ is
          when Starter.Token_Came =>
             Starting_Offers.Offer (Item);
             Watching_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.One_Token_Came, 0);
          when Starter.Station_Silent =>
             Watching_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.One_Station_Silent, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.One_Token_Came
+         + Ravenchart.Element_Id (Starter.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Starting_Fill (Found : out Ravenchart.Queueing.Fill) is

@@ -9,15 +9,14 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now)));
-      end loop;
-      return None;
+      case Now is
+         when On_Token_Came =>
+            return (if Enabled (Again, Self, Now) then Again else None);
+         when Expiry_Of_Start =>
+            return (if Enabled (Start, Self, Now) then Start else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -26,6 +26,21 @@ is
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range Start .. Again;
 
+   function In_Source
+     (T : Transition; Leaf : Starting_States.Leaf) return Boolean is
+     (case T is
+        when Start => Leaf = Starting_States.Before,
+        when Again => Leaf = Starting_States.After_Start) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Starting_States.Leaf is
+     (case T is
+        when Initial_Entry => Starting_States.Before,
+        when Start | Again => Starting_States.After_Start);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Token_In : Starter.Token_In_View;
@@ -57,27 +72,13 @@ is
       Timers  : Time_Outs;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Starting_States.Leaf) return Boolean is
-     (case T is
-        when Start => Leaf = Starting_States.Before,
-        when Again => Leaf = Starting_States.After_Start);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Start => Now = Expiry_Of_Start,
-           when Again => Now = On_Token_Came));
+           when Again => Now = On_Token_Came)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Starting_States.Leaf is
-     (case T is
-        when Initial_Entry => Starting_States.Before,
-        when Start | Again => Starting_States.After_Start);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

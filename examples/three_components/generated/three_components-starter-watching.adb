@@ -9,15 +9,16 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now)));
-      end loop;
-      return None;
+      case Now is
+         when On_Token_Came =>
+            return (if Enabled (Seen, Self, Now) then Seen else None);
+         when On_Station_Silent =>
+            return (if Enabled (Left, Self, Now) then Left else None);
+         when Expiry_Of_Calm =>
+            return (if Enabled (Calm, Self, Now) then Calm else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

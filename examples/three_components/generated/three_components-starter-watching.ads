@@ -27,6 +27,24 @@ is
 
    subtype Firing is Selection range Initial_Entry .. Left;
    subtype Transition is Selection range Seen .. Left;
+
+   function In_Source
+     (T : Transition; Leaf : Watching_States.Leaf) return Boolean is
+     (case T is
+        when Seen => Leaf = Watching_States.Quiet,
+        when Calm => Leaf = Watching_States.Busy,
+        when Left => Leaf in Watching_States.At_Work) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Watching_States.Leaf is
+     (case T is
+        when Initial_Entry | Calm => Watching_States.Quiet,
+        when Seen => Watching_States.Busy,
+        when Left => Watching_States.Alone);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    subtype Time_Outs is Ravenchart.Timers.Timer_Array (1 .. 1);
 
    --  The innermost region that holds all that a transition leaves and
@@ -48,30 +66,14 @@ is
       Timers  : Time_Outs;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Watching_States.Leaf) return Boolean is
-     (case T is
-        when Seen => Leaf = Watching_States.Quiet,
-        when Calm => Leaf = Watching_States.Busy,
-        when Left => Leaf in Watching_States.At_Work);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Seen => Now = On_Token_Came,
            when Calm => Now = Expiry_Of_Calm,
-           when Left => Now = On_Station_Silent));
+           when Left => Now = On_Station_Silent)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Watching_States.Leaf is
-     (case T is
-        when Initial_Entry | Calm => Watching_States.Quiet,
-        when Seen => Watching_States.Busy,
-        when Left => Watching_States.Alone);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Timers_After
      (Timers : Time_Outs;

@@ -22,6 +22,21 @@ is
    subtype Firing is Selection range Initial_Entry .. Pass_On;
    subtype Transition is Selection range Take .. Pass_On;
 
+   function In_Source
+     (T : Transition; Leaf : Handling_States.Leaf) return Boolean is
+     (case T is
+        when Take => Leaf = Handling_States.Empty,
+        when Pass_On => Leaf = Handling_States.Holding) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target (T : Firing) return Handling_States.Leaf is
+     (case T is
+        when Initial_Entry | Pass_On => Handling_States.Empty,
+        when Take => Handling_States.Holding);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Held : Three_Components.Token;
@@ -39,27 +54,13 @@ is
       Leaf    : Handling_States.Leaf := Handling_States.Empty;
    end record;
 
-   function In_Source
-     (T : Transition; Leaf : Handling_States.Leaf) return Boolean is
-     (case T is
-        when Take => Leaf = Handling_States.Empty,
-        when Pass_On => Leaf = Handling_States.Holding);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
-
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence) return Boolean is
      (In_Source (T, Self.Leaf)
       and then (case T is
            when Take => Now = On_Token_Came,
-           when Pass_On => Now = On_Worked));
+           when Pass_On => Now = On_Worked)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target (T : Firing) return Handling_States.Leaf is
-     (case T is
-        when Initial_Entry | Pass_On => Handling_States.Empty,
-        when Take => Handling_States.Holding);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence) return Boolean is

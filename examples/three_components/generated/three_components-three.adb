@@ -105,13 +105,12 @@ is
          when Station.Token_Came =>
             Handling_Offers.Offer (Item);
             Watching_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Three_Token_Came, 0);
          when Station.Worked =>
             Handling_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Three_Worked, 0);
       end case;
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Three_Token_Came
+         + Ravenchart.Element_Id (Station.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Handling_Fill (Found : out Ravenchart.Queueing.Fill) is

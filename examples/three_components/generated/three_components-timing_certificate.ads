@@ -35,11 +35,11 @@ is
 
    --  [processor_1] released every T. B: processor_3 in
    --  one.token_in.mailbox. C: what every release executes; C_2: rows of
-   --  every 2th release.
+   --  one release in 2.
    Processor_1_Priority : constant := System.Default_Priority + 3;
-   One_Ports_Budget : constant := 200_000;
-   One_Starting_Budget : constant := 200_000;
-   One_Watching_Budget : constant := 200_000;
+   One_Ports_Wcet : constant := 200_000;
+   One_Starting_Wcet : constant := 200_000;
+   One_Watching_Wcet : constant := 200_000;
    Processor_1_T : constant := 10_000_000;
    Processor_1_D : constant := 10_000_000;
    One_Ports_Divisor : constant := 1;
@@ -57,17 +57,17 @@ is
       or else One_Watching_Phase >= One_Watching_Divisor,
       "processor_1 must keep divisors and phases of its rows");
    Processor_1_J : constant := 0;
-   Processor_1_C : constant := One_Ports_Budget + 2 * Board_Context_Switch;
-   Processor_1_C_2 : constant := One_Starting_Budget + One_Watching_Budget;
+   Processor_1_C : constant := One_Ports_Wcet + 2 * Board_Context_Switch;
+   Processor_1_C_2 : constant := One_Starting_Wcet + One_Watching_Wcet;
    Processor_1_B : constant := Board_Critical_Section;
 
    --  [processor_2] released every T. B: processor_3 in
    --  one.token_in.mailbox. C: what every release executes; C_2: rows of
-   --  every 2th release.
+   --  one release in 2.
    Processor_2_Priority : constant := System.Default_Priority + 2;
-   Two_Ports_Budget : constant := 200_000;
-   Two_Handling_Budget : constant := 200_000;
-   Three_Watching_Budget : constant := 200_000;
+   Two_Ports_Wcet : constant := 200_000;
+   Two_Handling_Wcet : constant := 200_000;
+   Three_Watching_Wcet : constant := 200_000;
    Processor_2_T : constant := 10_000_000;
    Processor_2_D : constant := 10_000_000;
    Two_Ports_Divisor : constant := 1;
@@ -86,18 +86,18 @@ is
       "processor_2 must keep divisors and phases of its rows");
    Processor_2_J : constant := 0;
    Processor_2_C : constant :=
-     Two_Ports_Budget + Two_Handling_Budget + 2 * Board_Context_Switch;
-   Processor_2_C_2 : constant := Three_Watching_Budget;
+     Two_Ports_Wcet + Two_Handling_Wcet + 2 * Board_Context_Switch;
+   Processor_2_C_2 : constant := Three_Watching_Wcet;
    Processor_2_B : constant := Board_Critical_Section;
 
    --  [processor_3] released every T. B: main in health. C: what every
-   --  release executes; C_2: rows of every 2th release.
+   --  release executes; C_2: rows of one release in 2.
    Processor_3_Priority : constant := System.Default_Priority + 1;
-   Three_Ports_Budget : constant := 200_000;
-   Three_Handling_Budget : constant := 200_000;
-   Two_Watching_Budget : constant := 200_000;
-   Two_Work_Budget : constant := 200_000;
-   Three_Work_Budget : constant := 200_000;
+   Three_Ports_Wcet : constant := 200_000;
+   Three_Handling_Wcet : constant := 200_000;
+   Two_Watching_Wcet : constant := 200_000;
+   Two_Work_Wcet : constant := 200_000;
+   Three_Work_Wcet : constant := 200_000;
    Processor_3_T : constant := 10_000_000;
    Processor_3_D : constant := 10_000_000;
    Three_Ports_Divisor : constant := 1;
@@ -124,20 +124,20 @@ is
       "processor_3 must keep divisors and phases of its rows");
    Processor_3_J : constant := 0;
    Processor_3_C : constant :=
-     Three_Ports_Budget + Three_Handling_Budget + 2 * Board_Context_Switch;
+     Three_Ports_Wcet + Three_Handling_Wcet + 2 * Board_Context_Switch;
    Processor_3_C_2 : constant :=
-     Two_Watching_Budget + Two_Work_Budget + Three_Work_Budget;
+     Two_Watching_Wcet + Two_Work_Wcet + Three_Work_Wcet;
    Processor_3_B : constant := Board_Critical_Section;
 
    --  [board.supervisor] released every T. B: processor_1 in
    --  one.Starting.queue.
    Board_Supervisor_Priority : constant := System.Default_Priority + 4;
-   Board_Supervisor_Budget : constant := 50_000;
+   Board_Supervisor_Wcet : constant := 50_000;
    Board_Supervisor_T : constant := 10_000_000;
    Board_Supervisor_D : constant := 10_000_000;
    Board_Supervisor_J : constant := 0;
    Board_Supervisor_C : constant :=
-     Board_Supervisor_Budget + 2 * Board_Context_Switch;
+     Board_Supervisor_Wcet + 2 * Board_Context_Switch;
    Board_Supervisor_B : constant := Board_Critical_Section;
 
    function Board_Supervisor_Up (W : Window) return Time is

@@ -122,9 +122,9 @@ class RaiseStatement:
 
 @frozen
 class Return:
-    """``return value;``"""
+    """``return value;``, or from a procedure ``return;``"""
 
-    value: Expr
+    value: Expr | None = None
 
 
 @frozen

@@ -146,6 +146,8 @@ def statement(stmt: Stmt) -> Doc:
         case Loop(head, body):
             return upright(f"{_head(head)}loop", _block(body), SOFT, "end loop;")
         case Return(value):
+            if value is None:
+                return "return;"
             return group("return", nest(SOFT, expr_layout(value), by=2), ";")
         case Pragma(name, args):
             return _pragma(name, args)

@@ -21,10 +21,10 @@ def switches(task: Task) -> Expr:
 
 def sums(task: Task) -> dict[str, Expr]:
     """C of what every release executes, and C_n of the rows of every n-th release."""
-    budgets = [(slot.divisor, slot.element) for slot in task.slots] or [(1, task.element)]
+    rows = [(slot.divisor, slot.element) for slot in task.slots] or [(1, task.element)]
     found: dict[str, Expr] = {}
     for divisor, name in costs(task).items():
-        terms = [ref(f"{name_of(one)}_Budget") for n, one in budgets if n == divisor]
+        terms = [ref(f"{name_of(one)}_Wcet") for n, one in rows if n == divisor]
         found[name] = plus(*terms, switches(task)) if divisor == 1 else plus(*terms)
     return found
 

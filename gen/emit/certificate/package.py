@@ -204,9 +204,9 @@ def _terms(system: System, task: Task) -> list[Decl]:
     if task.driver_of is None:
         items.append(named_number(f"{own}_Priority", priority(task.priority)))
     for slot in task.slots:
-        items.append(stated(f"{name_of(slot.element)}_Budget", slot.timing.wcet))
+        items.append(stated(f"{name_of(slot.element)}_Wcet", slot.timing.wcet))
     if not task.slots:
-        items.append(stated(f"{own}_Budget", task.wcet))
+        items.append(stated(f"{own}_Wcet", task.wcet))
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
     if has_offset(system, task):
         items.append(stated(f"{own}_O", task.offset))
@@ -231,7 +231,7 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
     text += f" B: {held[1]} in {held[0].element}." if held else " Nothing blocks it."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if rare:
-        every = ", ".join(f"C_{n}: rows of every {n}th release" for n in rare)
+        every = ", ".join(f"C_{n}: rows of one release in {n}" for n in rare)
         text += f" C: what every release executes; {every}."
     return text
 
@@ -302,8 +302,8 @@ def _row(system: System, task: Task, place: int, claims: Claims) -> list[Decl]:
             Comment(f"[{row}] the last row: done when {task.element} completes"),
             named_number(f"{done}_Done", ref(f"{own}_R")),
         ]
-    budgets = [ref(f"{name_of(slot.element)}_Budget") for slot in task.slots[:place]]
-    needed = plus(switches(task), *budgets)
+    executed = [ref(f"{name_of(slot.element)}_Wcet") for slot in task.slots[:place]]
+    needed = plus(switches(task), *executed)
     window = ref(f"{done}_W")
     return [
         Comment(f"[{row}] done, from the event of its processor"),

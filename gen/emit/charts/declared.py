@@ -47,7 +47,7 @@ from .history import restored_functions, restored_place
 from .lanes import LIST, declared_lanes, firing_list
 from .lasting import declared_lasting
 from .operations import operations
-from .records import region_types
+from .records import chart_types, memory, records
 from .safety import Safety
 from .selection import is_selected, is_selection
 from .shape import START, RegionShape
@@ -69,10 +69,15 @@ def emit_region(
 
 
 def _spec(shape: RegionShape) -> tuple[Decl, ...]:
-    safe = Safety(shape).declared()
-    lists = firing_list(shape) if shape.listed else []
-    types = (*region_types(shape), *lists)
-    return (*types, *_declared(shape), *safe, *operations(shape))
+    return (
+        *chart_types(shape),
+        *_drawn(shape),
+        *records(shape),
+        *(firing_list(shape) if shape.listed else []),
+        *_declared(shape),
+        *Safety(shape).declared(),
+        *operations(shape),
+    )
 
 
 # --- The chart as declared ---------------------------------------------------
@@ -81,48 +86,53 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
 MANY_LANES = 4
 """In charts with more busy regions a step calls In_Source. Inlined there, once for each region,
 the function made the program grow with the square of the chart."""
+INLINE, CALLED = (Aspect("Inline_Always"),), (Aspect("No_Inline"),)
+"""Inlined in the selection, where the transition is known, one line of a function is left."""
 
 
-def _declared(shape: RegionShape) -> list[Decl]:
-    chosen = Param("T", "in", "Transition")
+def _drawn(shape: RegionShape) -> list[Decl]:
+    """The chart as it is drawn: from where to where each transition leads."""
     place = Param(shape.place, "in", shape.place_type)
-    lines = tuple((f.literal, shape.enabled_when[f.literal]) for f in shape.firings)
     sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
-    if not lines:
-        lines = sources = (("None", FALSE),)
     start = shape.configuration(shape.after(shape.start), shape.place)
     targets = tuple((f.literal, _target(shape, f)) for f in shape.firings)
-    if not targets:
-        targets = (("None", start),)
-    in_source = call("In_Source", ref("T"), ref("Self", shape.place))
-    items: list[Decl] = [
+    return [
         Subprogram(
             "In_Source",
-            (chosen, place),
+            (Param("T", "in", "Transition"), place),
             "Boolean",
-            aspects=(Aspect("No_Inline"),) if len(shape.busy_lanes) > MANY_LANES else (),
-            expression=choice_of(ref("T"), sources),
+            aspects=CALLED if len(shape.busy_lanes) > MANY_LANES else INLINE,
+            expression=choice_of(ref("T"), sources or (("None", FALSE),)),
         ),
-        Comment("The declared chart: the source of each transition. Is it the leaf, or around it?"),
-        Subprogram(
-            "Enabled",
-            (chosen, *shape.situation),
-            "Boolean",
-            expression=both(in_source, CaseExpr(ref("T"), lines)),
-        ),
-        Comment("The trigger and the guard of each transition."),
+        Comment("The source of each transition: an active leaf, or an active state around it."),
+        *memory(shape),
         *restored_functions(shape),
         Subprogram(
             "Target",
             (Param("T", "in", "Firing"), *shape.target_params()),
             shape.place_type,
-            expression=choice_of(ref("T"), ((START, start), *targets)),
+            expression=choice_of(ref("T"), ((START, start), *(targets or (("None", start),)))),
         ),
         Comment(
-            "The leaf it leads to; that of a composite is its default."
+            "The leaf that each transition leads to; that of a composite is its default."
             if shape.single
-            else "The leaves it leads to; those of a composite are its defaults."
+            else "The leaves that each transition leads to; those of a composite are its defaults."
         ),
+    ]
+
+
+def _declared(shape: RegionShape) -> list[Decl]:
+    in_source = call("In_Source", ref("T"), ref("Self", shape.place))
+    lines = tuple((f.literal, shape.enabled_when[f.literal]) for f in shape.firings)
+    items: list[Decl] = [
+        Subprogram(
+            "Enabled",
+            (Param("T", "in", "Transition"), *shape.situation),
+            "Boolean",
+            aspects=INLINE,
+            expression=both(in_source, CaseExpr(ref("T"), lines or (("None", FALSE),))),
+        ),
+        Comment("The trigger and the guard of each transition."),
     ]
     items += declared_lasting(shape)
     items += _selections(shape)

@@ -137,7 +137,7 @@ def _is_of(shape: RegionShape, lane: Lane) -> Expr:
     return call(_IS_OF, _FIRED, ref("C"), last)
 
 
-BEFORE = "Place_Before"
+BEFORE = "Configuration_Before"
 """The configuration before any transition is taken."""
 
 LIST = ref("Firings.List")

@@ -45,8 +45,8 @@ TIMED = (ref("Ravenchart.Timers.Timer"), ref("Ravenchart.Timers.Timer_Array"))
 """The types whose equality the contracts of time-outs use."""
 
 
-def region_types(shape: RegionShape) -> list[Decl]:
-    """All types of the package, and the operators that its chart uses."""
+def chart_types(shape: RegionShape) -> list[Decl]:
+    """The occurrences and the transitions, and the operators that the chart uses."""
     names = tuple(f.literal for f in shape.firings)
     path = f"{shape.component.name}.{shape.region.name}"
     items: list[Decl] = _use_types(shape)
@@ -60,7 +60,7 @@ def region_types(shape: RegionShape) -> list[Decl]:
     ]
     if not shape.single:
         items += _lane_types(shape)
-    return items + _records(shape)
+    return items
 
 
 def _places(shape: RegionShape) -> tuple[Comment, ...]:
@@ -113,7 +113,23 @@ def _lane_types(shape: RegionShape) -> list[Decl]:
     return items
 
 
-def _records(shape: RegionShape) -> list[Decl]:
+def memory(shape: RegionShape) -> list[Decl]:
+    """The last leaves that histories restore, where there are histories."""
+    if not shape.memories:
+        return []
+    past: list[RecordComponent] = []
+    for one in shape.memories:
+        first = next(iter(shape.literals_in(one.place)))
+        past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
+        past.append(RecordComponent(one.known, "Boolean", FALSE))
+    return [
+        RecordDeclaration("Memory", tuple(past)),
+        Comment("The last leaf left in each region that a history restores."),
+    ]
+
+
+def records(shape: RegionShape) -> list[Decl]:
+    """The values that a step reads, keeps and sends."""
     region, component = shape.region, shape.component
     items: list[Decl] = []
     if region.writes:
@@ -155,16 +171,6 @@ def _records(shape: RegionShape) -> list[Decl]:
         items += [
             Comment("What one step sends and raises."),
             RecordDeclaration("Outbox", tuple(sent)),
-        ]
-    if shape.memories:
-        past: list[RecordComponent] = []
-        for one in shape.memories:
-            first = next(iter(shape.literals_in(one.place)))
-            past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
-            past.append(RecordComponent(one.known, "Boolean", FALSE))
-        items += [
-            Comment("What histories ask for: the last leaf left in a region, if any."),
-            RecordDeclaration("Memory", tuple(past)),
         ]
     if shape.timers:
         each = up_to(plain(len(shape.timers)))

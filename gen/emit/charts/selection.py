@@ -3,25 +3,28 @@
 
 """Selection: the first enabled transition of a top-level or orthogonal region, as declared.
 
-One loop goes over the transitions in the declared order and ends at the first that `Enabled`
-holds for. `Enabled` looks at the source first, so a transition of another state needs one
-comparison.
+A case over the occurrence gives the transitions with that trigger; `Enabled` is asked of each, in
+the declared order. The compiler knows the transition and the occurrence there, so that a
+comparison of the state and the guard are left.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ravenchart.gen.emit.ada.declarations import Aspect, Decl, Object, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import (
+    OTHERS,
     Arg,
     Attribute,
     Call,
+    Choice,
     Expr,
     ForAll,
     IfExpr,
     OperatorChain,
     Prefix,
     Range,
-    RangeConstrained,
     both,
     call,
     chain,
@@ -30,17 +33,16 @@ from ravenchart.gen.emit.ada.expressions import (
     number,
     result,
 )
-from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.statements import (
     Assign,
-    ForLoop,
     IfStatement,
-    Loop,
     Pragma,
     Return,
     Stmt,
+    case_of,
 )
-from ravenchart.gen.emit.language.compound import PASSED
+from ravenchart.gen.emit.language.compound import PASSED, Firing
 from ravenchart.gen.model.statechart import Lane
 
 from .shape import PASSING, RegionShape
@@ -93,14 +95,14 @@ def _bounds(shape: RegionShape, among: str) -> tuple[Arg, ...]:
 
 
 def selectors(shape: RegionShape) -> list[Decl]:
-    """The selection among transitions, of segments, and for all orthogonal regions."""
-    return [_selected(shape), *_segments(shape), *([] if shape.single else [_choose(shape)])]
+    """The selection for each region, of segments, and for all orthogonal regions."""
+    each = [_selected(shape, lane) for lane in shape.busy_lanes]
+    return [*each, *_segments(shape), *([] if shape.single else [_choose(shape)])]
 
 
 def whole(shape: RegionShape, lane: Lane) -> Call:
     """The selection of a top-level or orthogonal region."""
-    bounds = _bounds(shape, shape.transitions_of(lane))
-    return Call(_SELECTED, (*bounds, *shape.situation_args()))
+    return Call(_name(shape, lane), shape.situation_args())
 
 
 def segment(shape: RegionShape) -> Expr:
@@ -108,31 +110,34 @@ def segment(shape: RegionShape) -> Expr:
     return call(_SEGMENT, *(ref(p.name) for p in shape.situation if p.name != "Now"))
 
 
-def _selected(shape: RegionShape) -> Subprogram:
-    """The loop over the declared transitions."""
-    bounds = () if shape.single else _BOUNDS
-    params = (*bounds, *shape.situation)
-    post = call("Is_Selection", result(_SELECTED), *(ref(p.name) for p in params))
-    first: DottedName | Attribute = ref("First")
-    among: DottedName | RangeConstrained = RangeConstrained(_ALL, Range(first, ref("Last")))
-    if shape.single:
-        first, among = Attribute(_ALL, "First"), ref(_ALL)
-    one = ref("T")
-    none_yet = ForAll("J", Range(first, one), Prefix("not", enabled(shape, ref("J"))))
-    search = Loop(
-        ForLoop("T", among),
-        (
-            IfStatement(((enabled(shape, one), (Return(one),)),)),
-            Pragma("Loop_Invariant", (none_yet,)),
-        ),
-    )
+def _name(shape: RegionShape, lane: Lane) -> str:
+    return _SELECTED if shape.single else f"{_SELECTED}_{shape.lane_name(lane)}"
+
+
+def _selected(shape: RegionShape, lane: Lane) -> Subprogram:
+    """The first enabled transition of a region."""
+    own = [f for f in shape.firings if f.lane == lane]
+    none = Return(ref("None"))
+    rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = []
+    for occurrence in shape.occurrences():
+        if asked := [f for f in own if occurrence in shape.triggers(f)]:
+            rows.append((occurrence, (Return(_first(shape, asked)),)))
+    name = _name(shape, lane)
     return Subprogram(
-        _SELECTED,
-        params,
+        name,
+        shape.situation,
         "Selection",
-        aspects=(Aspect("Post", post),),
-        body=(search, Return(ref("None"))),
+        aspects=(Aspect("Post", is_selected(shape, result(name), lane)),),
+        body=(case_of(ref("Now"), [*rows, (OTHERS, (none,))]) if rows else none,),
     )
+
+
+def _first(
+    shape: RegionShape, among: Sequence[Firing], rest: str = "None", **replaced: Expr
+) -> IfExpr:
+    """The first of these that is enabled, or the rest."""
+    literals = [ref(firing.literal) for firing in among]
+    return IfExpr(tuple((enabled(shape, t, **replaced), t) for t in literals), ref(rest))
 
 
 def _segments(shape: RegionShape) -> list[Decl]:
@@ -140,23 +145,24 @@ def _segments(shape: RegionShape) -> list[Decl]:
     passed = [p.name for p in shape.region.pseudostates if p.kind in PASSED]
     if not passed:
         return []
+    lines = [f for f in shape.firings if f.sources[0] in passed]
     ways: list[Stmt] = []
     for pseudo in passed:
-        out = [f.literal for f in shape.firings if f.sources[0] == pseudo]
-        some = chain("or else", [enabled(shape, ref(name), Now=ref(PASSING)) for name in out])
+        out = [ref(f.literal) for f in lines if f.sources[0] == pseudo]
+        some = chain("or else", [enabled(shape, t, Now=ref(PASSING)) for t in out])
         there = IfExpr(((shape.in_state(shape.held, pseudo), some),), None)
         ways.append(Pragma("Assert", (there,)))
     waits = OperatorChain(">", (call("Segments_Left", shape.held), number(0)))
     found = result(_SEGMENT)
     post = both(enabled(shape, found, Now=ref(PASSING)), call("Is_Segment", found))
-    all_lanes = Call(_SELECTED, (*_bounds(shape, _ALL), *shape.situation_args(Now=ref(PASSING))))
+    *others, last = lines
     return [
         Subprogram(
             _SEGMENT,
             tuple(p for p in shape.situation if p.name != "Now"),
             _ALL,
             aspects=(Aspect("Pre", waits), Aspect("Post", post)),
-            body=(*ways, Return(all_lanes)),
+            body=(*ways, Return(_first(shape, others, last.literal, Now=ref(PASSING)))),
         )
     ]
 

@@ -67,6 +67,7 @@ TYPES = frozenset(
         *("occurrence", "selection", "firing", "transition", "choice", "domain", "memory", "chart"),
         *("variables", "inputs", "outbox", "region", "item"),
         *("firings", "deferrals", "done_states", "time_outs"),
+        *("configuration", "leaf", "name", "d"),
     )
 )
 """Names that hide an event of the same name inside a region's package."""

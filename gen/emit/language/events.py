@@ -79,6 +79,11 @@ def event_value(
     return Aggregate((*rows, *rest), ref(package, "Event"))
 
 
+def name_type(component: Component) -> str:
+    """The enumeration of the events, as the component's package names it."""
+    return "Event_Name" if carries(component) else "Event"
+
+
 def name_of(component: Component, event: str) -> DottedName:
     """The enumeration value of an event held in ``event``."""
     return ref(event, "Name") if carries(component) else ref(event)

@@ -17,10 +17,11 @@ _EVERYWHERE = """
 ada boolean false interfaces natural positive ravenchart standard system true
 """
 _REGION = """
-active active_at_first after before beginning box c chart choice chosen completed d data deferrals
-domain done_states due event event_lists fired firing firings first i initial_entry inputs ins
-item j last leaf memory name none now occurrence outbox past place region released segment
-selection self t time_outs timers top_transition transition variables visit was
+active active_at_first after before beginning box c chart choice chosen completed configuration
+d data deferrals domain done_states due event event_lists fired firing firings first i
+initial_entry inputs ins item j last leaf memory name none now occurrence outbox past region
+released segment selection self t time_outs timers top_transition transition variables visit
+was
 """
 _STATES = "leaf configuration"
 _NODES = "disorder node nodes nowhere region self"

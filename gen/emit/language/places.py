@@ -68,7 +68,7 @@ class Places:
     @property
     def place(self) -> str:
         """The parameter and component that hold a configuration."""
-        return "Leaf" if self.single else "Place"
+        return "Leaf" if self.single else "Configuration"
 
     def is_end(self, vertex: str) -> bool:
         """Is it a terminate? Then it is where the whole region is, in whatever state it stands."""

@@ -26,8 +26,20 @@ project {name} is
    for Create_Missing_Dirs use "True";
    for Main use ("{main}.adb");
 
+   type Run_Time_Name is ("full", "light");
+   Run_Time : Run_Time_Name := external ("RAVENCHART_RUN_TIME", "full");
+   Cases := ();
+   case Run_Time is
+      when "full" =>
+         Cases := ("-fno-jump-tables");
+         --  A case of a chart compares: that is quicker on a large processor.
+      when "light" =>
+         --  On a small one tables of addresses are shorter.
+         null;
+   end case;
+
    package Compiler is
-      for Default_Switches ("Ada") use Ravenchart.Program_Switches;
+      for Default_Switches ("Ada") use Ravenchart.Program_Switches & Cases;
       for Local_Configuration_Pragmas use
         Ravenchart'Project_Dir & "spark_runtime/ravenscar.adc";
    end Compiler;

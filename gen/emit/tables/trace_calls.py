@@ -31,13 +31,17 @@ def note(
     system: System, kind: str, element: str, element_kind: str, value: Expr | None = None
 ) -> tuple[Stmt, ...]:
     """One trace record about ``element``, or nothing when there is no trace."""
+    named = ref("Elements", element_constant(element, element_kind))
+    return note_of(system, kind, named, value)
+
+
+def note_of(
+    system: System, kind: str, element: Expr, value: Expr | None = None
+) -> tuple[Stmt, ...]:
+    """The same about the element with that number."""
     if not traced(system):
         return ()
-    args = arguments(
-        ref("Ravenchart.Traces", kind),
-        ref("Elements", element_constant(element, element_kind)),
-        value or number(0),
-    )
+    args = arguments(ref("Ravenchart.Traces", kind), element, value or number(0))
     return (Do("Trace.Buffer.Note", args),)
 
 

@@ -3,8 +3,9 @@
 
 """Element ids: numbers in the generated program, names and places in trace.json.
 
-The numbers follow model order; the rows of a processor follow its own number
-directly, so that row k of the table is the processor's number + 1 + k.
+The numbers follow model order. The rows of a processor follow its own number
+directly, so that row k of the table is the processor's number + 1 + k; the
+events of an instance follow each other.
 """
 
 from __future__ import annotations

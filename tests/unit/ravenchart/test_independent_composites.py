@@ -88,7 +88,7 @@ def test_each_altered_number_of_a_certificate_is_found(nodes: bool, tmp_path: Pa
     found = re.finditer(r"^   (\w+) : constant :=", text, re.MULTILINE)
     #  those of a chain from end to end are not derived
     numbers = [one for one in found if not re.search(r"^Chain_|_(Done|W|Needs)$", one[1])]
-    inside = r"Robot_Left_Shoulder_Follow_Budget" if not nodes else r"One_Source_Tell_Budget"
+    inside = r"Robot_Left_Shoulder_Follow_Wcet" if not nodes else r"One_Source_Tell_Wcet"
     assert len(numbers) > 40 and inside in {one[1] for one in numbers}
     for one in numbers:
         path.write_text(f"{text[: one.end()]} 1 + {text[one.end() :]}", encoding="utf-8")
@@ -100,14 +100,14 @@ def test_each_altered_number_of_a_certificate_is_found(nodes: bool, tmp_path: Pa
     ("old", "new", "part"),
     [
         #  time of a device that is reached through two delegated interfaces
-        ("Get_Position: 10 us", "Get_Position: 11 us", "Robot_Right_Elbow_Follow_Budget is"),
+        ("Get_Position: 10 us", "Get_Position: 11 us", "Robot_Right_Elbow_Follow_Wcet is"),
         ("wcet: 100 us\n        body:\n          - {call", "wcet: 101 us\n        body:\n"
-         "          - {call", "Robot_Left_Elbow_Follow_Budget is"),
+         "          - {call", "Robot_Left_Elbow_Follow_Wcet is"),
         #  one of four joints loses its drive
         ("      - {from: left.Shoulder_Drive, to: Left_Shoulder}\n", "",
-         "Robot_Left_Shoulder_Follow_Budget is"),
+         "Robot_Left_Shoulder_Follow_Wcet is"),
         ("      - {from: elbow.Drive, to: Elbow_Drive}\n", "",
-         "Robot_Right_Elbow_Follow_Budget is"),
+         "Robot_Right_Elbow_Follow_Wcet is"),
         ("      - robot.left.shoulder.follow\n", "", "Robot_Left_Shoulder_Follow"),
     ],
 )  # fmt: skip

@@ -10,15 +10,37 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when On_Told =>
+            return
+              (if Enabled (Go, Self, Now, Ins) then Go
+               elsif Enabled (Rest, Self, Now, Ins) then Rest
+               elsif Enabled (Told_Off_Bus, Self, Now, Ins)
+                  then Told_Off_Bus
+               elsif Enabled (Back, Self, Now, Ins) then Back
+               else None);
+         when On_Nobody_Tells =>
+            return
+              (if Enabled (Lost_At_Rest, Self, Now, Ins) then Lost_At_Rest
+               elsif Enabled (Lost, Self, Now, Ins) then Lost
+               else None);
+         when On_Bus_Failed =>
+            return
+              (if Enabled (Cut_Off_At_Rest, Self, Now, Ins)
+                  then Cut_Off_At_Rest
+               elsif Enabled (Cut_Off, Self, Now, Ins) then Cut_Off
+               elsif Enabled (Cut_Off_Besides, Self, Now, Ins)
+                  then Cut_Off_Besides
+               elsif Enabled (Still_Cut_Off, Self, Now, Ins)
+                  then Still_Cut_Off
+               else None);
+         when On_Bus_Back =>
+            return
+              (if Enabled (Connected, Self, Now, Ins) then Connected
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

@@ -32,6 +32,30 @@ is
    subtype Firing is Selection range Initial_Entry .. Back;
    subtype Transition is Selection range Go .. Back;
 
+   function In_Source
+     (T : Transition; Leaf : Drive_States.Leaf) return Boolean is
+     (case T is
+        when Go | Lost_At_Rest | Cut_Off_At_Rest =>
+           Leaf = Drive_States.Standing,
+        when Rest | Lost | Cut_Off => Leaf = Drive_States.Following,
+        when Cut_Off_Besides | Back => Leaf = Drive_States.Safe,
+        when Still_Cut_Off | Told_Off_Bus | Connected =>
+           Leaf = Drive_States.Safe_Off_Bus) with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Drive_States.Leaf) return Drive_States.Leaf is
+     (case T is
+        when Initial_Entry | Rest | Back => Drive_States.Standing,
+        when Go => Drive_States.Following,
+        when Lost_At_Rest | Lost | Connected => Drive_States.Safe,
+        when Cut_Off_At_Rest | Cut_Off | Cut_Off_Besides =>
+           Drive_States.Safe_Off_Bus,
+        when Still_Cut_Off | Told_Off_Bus => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  What it reads, copied in once per execution.
    type Inputs is record
       Order : Linear_Servo.Order_View;
@@ -42,18 +66,6 @@ is
       Started : Boolean := False;
       Leaf    : Drive_States.Leaf := Drive_States.Standing;
    end record;
-
-   function In_Source
-     (T : Transition; Leaf : Drive_States.Leaf) return Boolean is
-     (case T is
-        when Go | Lost_At_Rest | Cut_Off_At_Rest =>
-           Leaf = Drive_States.Standing,
-        when Rest | Lost | Cut_Off => Leaf = Drive_States.Following,
-        when Cut_Off_Besides | Back => Leaf = Drive_States.Safe,
-        when Still_Cut_Off | Told_Off_Bus | Connected =>
-           Leaf = Drive_States.Safe_Off_Bus);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
@@ -72,19 +84,8 @@ is
            when Still_Cut_Off => Now = On_Bus_Failed,
            when Told_Off_Bus => Now = On_Told,
            when Connected => Now = On_Bus_Back,
-           when Back => Now = On_Told));
+           when Back => Now = On_Told)) with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Drive_States.Leaf) return Drive_States.Leaf is
-     (case T is
-        when Initial_Entry | Rest | Back => Drive_States.Standing,
-        when Go => Drive_States.Following,
-        when Lost_At_Rest | Lost | Connected => Drive_States.Safe,
-        when Cut_Off_At_Rest | Cut_Off | Cut_Off_Besides =>
-           Drive_States.Safe_Off_Bus,
-        when Still_Cut_Off | Told_Off_Bus => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)

@@ -63,35 +63,19 @@ is
       Report => Health_Counts.Faults.Report);
 
    procedure Put_Order (Item : Two_Nodes.Servo_Order) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Order_Mailbox.Put (Item, Status);
+      Order_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived, Elements.Servo_Order, 0);
    end Put_Order;
 
    procedure Offer (Item : Linear_Servo.Event) is
    begin
-      case Item is
-         when Linear_Servo.Told =>
-            Drive_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Servo_Told, 0);
-         when Linear_Servo.Nobody_Tells =>
-            Drive_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Servo_Nobody_Tells, 0);
-         when Linear_Servo.Bus_Failed =>
-            Drive_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Servo_Bus_Failed, 0);
-         when Linear_Servo.Bus_Back =>
-            Drive_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Servo_Bus_Back, 0);
-      end case;
+      Drive_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Servo_Told
+         + Ravenchart.Element_Id (Linear_Servo.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Drive_Fill (Found : out Ravenchart.Queueing.Fill) is

@@ -60,32 +60,20 @@ is
       Report => Health_Counts.Faults.Report);
 
    procedure Put_Report (Item : Two_Nodes.Servo_Report) is
-      Status : Ravenchart.Queueing.Put_Status;
-      pragma Warnings (GNATprove, Off,
-         """Status"" is set by ""Put"" but not used*",
-         Reason => "a new sample replaces the old one");
+      --  A new sample replaces the old one.
+      Unused : Ravenchart.Queueing.Put_Status;
    begin
-      Report_Mailbox.Put (Item, Status);
+      Report_Mailbox.Put (Item, Unused);
       Trace.Buffer.Note (Ravenchart.Traces.Arrived,
          Elements.Supervisor_Report, 0);
    end Put_Report;
 
    procedure Offer (Item : Traveller.Event) is
    begin
-      case Item is
-         when Traveller.Servo_Lost =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Servo_Lost, 0);
-         when Traveller.Bus_Failed =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Bus_Failed, 0);
-         when Traveller.Bus_Back =>
-            Mission_Offers.Offer (Item);
-            Trace.Buffer.Note (Ravenchart.Traces.Raised,
-               Elements.Supervisor_Bus_Back, 0);
-      end case;
+      Mission_Offers.Offer (Item);
+      Trace.Buffer.Note (Ravenchart.Traces.Raised,
+         Elements.Supervisor_Servo_Lost
+         + Ravenchart.Element_Id (Traveller.Event'Pos (Item)), 0);
    end Offer;
 
    procedure Read_Mission_Fill (Found : out Ravenchart.Queueing.Fill) is

@@ -52,31 +52,31 @@ is
    --  for T to be over as well. B: supervision in
    --  supervisor.report.mailbox.
    Reception_Panel_Priority : constant := System.Default_Priority + 4;
-   Link_Receive_Panel_Budget : constant := 40_000;
+   Link_Receive_Panel_Wcet : constant := 40_000;
    Reception_Panel_T : constant := 1_000_000;
    Reception_Panel_D : constant := 1_000_000;
    Reception_Panel_J : constant := 0;
    Reception_Panel_C : constant :=
-     Link_Receive_Panel_Budget + 4 * Panel_Context_Switch;
+     Link_Receive_Panel_Wcet + 4 * Panel_Context_Switch;
    Reception_Panel_B : constant := Panel_Critical_Section;
 
    --  [reception_drive] released by arrivals, no closer than T; it may wait
    --  for T to be over as well. B: control in servo.order.mailbox.
    Reception_Drive_Priority : constant := System.Default_Priority + 3;
-   Link_Receive_Drive_Budget : constant := 40_000;
+   Link_Receive_Drive_Wcet : constant := 40_000;
    Reception_Drive_T : constant := 1_000_000;
    Reception_Drive_D : constant := 1_000_000;
    Reception_Drive_J : constant := 0;
    Reception_Drive_C : constant :=
-     Link_Receive_Drive_Budget + 4 * Drive_Context_Switch;
+     Link_Receive_Drive_Wcet + 4 * Drive_Context_Switch;
    Reception_Drive_B : constant := Drive_Critical_Section;
 
    --  [supervision] released every T. B: main in panel.health.
    Supervision_Priority : constant := System.Default_Priority + 1;
-   Link_Watch_Panel_Budget : constant := 50_000;
-   Supervisor_Ports_Budget : constant := 100_000;
-   Supervisor_Mission_Budget : constant := 200_000;
-   Supervisor_Plan_Budget : constant := 150_000;
+   Link_Watch_Panel_Wcet : constant := 50_000;
+   Supervisor_Ports_Wcet : constant := 100_000;
+   Supervisor_Mission_Wcet : constant := 200_000;
+   Supervisor_Plan_Wcet : constant := 150_000;
    Supervision_T : constant := 20_000_000;
    Supervision_D : constant := 20_000_000;
    Supervision_Divisor : constant := 1;
@@ -86,19 +86,18 @@ is
       "supervision must keep divisors and phases of its rows");
    Supervision_J : constant := 0;
    Supervision_C : constant :=
-     Link_Watch_Panel_Budget + Supervisor_Ports_Budget
-     + Supervisor_Mission_Budget + Supervisor_Plan_Budget
-     + 2 * Panel_Context_Switch;
+     Link_Watch_Panel_Wcet + Supervisor_Ports_Wcet + Supervisor_Mission_Wcet
+     + Supervisor_Plan_Wcet + 2 * Panel_Context_Switch;
    Supervision_B : constant := Panel_Critical_Section;
 
    --  [control] released every T. B: main in drive.health. C: what every
-   --  release executes; C_2: rows of every 2th release.
+   --  release executes; C_2: rows of one release in 2.
    Control_Priority : constant := System.Default_Priority + 2;
-   Link_Watch_Drive_Budget : constant := 50_000;
-   Servo_Ports_Budget : constant := 100_000;
-   Servo_Drive_Budget : constant := 200_000;
-   Servo_Control_Budget : constant := 150_000;
-   Servo_Tell_Budget : constant := 100_000;
+   Link_Watch_Drive_Wcet : constant := 50_000;
+   Servo_Ports_Wcet : constant := 100_000;
+   Servo_Drive_Wcet : constant := 200_000;
+   Servo_Control_Wcet : constant := 150_000;
+   Servo_Tell_Wcet : constant := 100_000;
    Control_T : constant := 10_000_000;
    Control_D : constant := 10_000_000;
    Link_Watch_Drive_Divisor : constant := 2;
@@ -125,69 +124,67 @@ is
       "control must keep divisors and phases of its rows");
    Control_J : constant := 0;
    Control_C : constant :=
-     Servo_Ports_Budget + Servo_Drive_Budget + Servo_Control_Budget
+     Servo_Ports_Wcet + Servo_Drive_Wcet + Servo_Control_Wcet
      + 2 * Drive_Context_Switch;
-   Control_C_2 : constant := Link_Watch_Drive_Budget + Servo_Tell_Budget;
+   Control_C_2 : constant := Link_Watch_Drive_Wcet + Servo_Tell_Wcet;
    Control_B : constant := Drive_Critical_Section;
 
    --  [link.driver_tx.supervisor_order] the driver, released by
    --  supervision. B: supervision in panel.link.transmit.
-   Link_Driver_Tx_Supervisor_Order_Budget : constant := 40_000;
+   Link_Driver_Tx_Supervisor_Order_Wcet : constant := 40_000;
    Link_Driver_Tx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_D : constant := 20_000_000;
    Link_Driver_Tx_Supervisor_Order_J : constant := Supervision_R;
    Link_Driver_Tx_Supervisor_Order_C : constant :=
-     Link_Driver_Tx_Supervisor_Order_Budget + 2 * Panel_Context_Switch;
+     Link_Driver_Tx_Supervisor_Order_Wcet + 2 * Panel_Context_Switch;
    Link_Driver_Tx_Supervisor_Order_B : constant := Panel_Critical_Section;
 
    --  [link.driver_rx.supervisor_order] the driver, released by
    --  link.supervisor_order. B: control in drive.link.transmit.
-   Link_Driver_Rx_Supervisor_Order_Budget : constant := 40_000;
+   Link_Driver_Rx_Supervisor_Order_Wcet : constant := 40_000;
    Link_Driver_Rx_Supervisor_Order_T : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_D : constant := 20_000_000;
    Link_Driver_Rx_Supervisor_Order_J : constant := Link_Supervisor_Order_R;
    Link_Driver_Rx_Supervisor_Order_C : constant :=
-     Link_Driver_Rx_Supervisor_Order_Budget + 2 * Drive_Context_Switch;
+     Link_Driver_Rx_Supervisor_Order_Wcet + 2 * Drive_Context_Switch;
    Link_Driver_Rx_Supervisor_Order_B : constant := Drive_Critical_Section;
 
    --  [link.driver_tx.servo_report] the driver, released by control. B:
    --  control in drive.link.transmit.
-   Link_Driver_Tx_Servo_Report_Budget : constant := 40_000;
+   Link_Driver_Tx_Servo_Report_Wcet : constant := 40_000;
    Link_Driver_Tx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_D : constant := 20_000_000;
    Link_Driver_Tx_Servo_Report_J : constant := Control_R;
    Link_Driver_Tx_Servo_Report_C : constant :=
-     Link_Driver_Tx_Servo_Report_Budget + 2 * Drive_Context_Switch;
+     Link_Driver_Tx_Servo_Report_Wcet + 2 * Drive_Context_Switch;
    Link_Driver_Tx_Servo_Report_B : constant := Drive_Critical_Section;
 
    --  [link.driver_rx.servo_report] the driver, released by
    --  link.servo_report. B: supervision in panel.link.transmit.
-   Link_Driver_Rx_Servo_Report_Budget : constant := 40_000;
+   Link_Driver_Rx_Servo_Report_Wcet : constant := 40_000;
    Link_Driver_Rx_Servo_Report_T : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_D : constant := 20_000_000;
    Link_Driver_Rx_Servo_Report_J : constant := Link_Servo_Report_R;
    Link_Driver_Rx_Servo_Report_C : constant :=
-     Link_Driver_Rx_Servo_Report_Budget + 2 * Panel_Context_Switch;
+     Link_Driver_Rx_Servo_Report_Wcet + 2 * Panel_Context_Switch;
    Link_Driver_Rx_Servo_Report_B : constant := Panel_Critical_Section;
 
    --  [panel.probe] released every T. B: main in panel.probe.board.
    Panel_Probe_Priority : constant := System.Default_Priority + 6;
-   Panel_Probe_Budget : constant := 20_000;
+   Panel_Probe_Wcet : constant := 20_000;
    Panel_Probe_T : constant := 1_000_000;
    Panel_Probe_D : constant := 1_000_000;
    Panel_Probe_J : constant := 0;
-   Panel_Probe_C : constant :=
-     Panel_Probe_Budget + 2 * Panel_Context_Switch;
+   Panel_Probe_C : constant := Panel_Probe_Wcet + 2 * Panel_Context_Switch;
    Panel_Probe_B : constant := Panel_Critical_Section;
 
    --  [drive.probe] released every T. B: main in drive.probe.board.
    Drive_Probe_Priority : constant := System.Default_Priority + 6;
-   Drive_Probe_Budget : constant := 20_000;
+   Drive_Probe_Wcet : constant := 20_000;
    Drive_Probe_T : constant := 1_000_000;
    Drive_Probe_D : constant := 1_000_000;
    Drive_Probe_J : constant := 0;
-   Drive_Probe_C : constant :=
-     Drive_Probe_Budget + 2 * Drive_Context_Switch;
+   Drive_Probe_C : constant := Drive_Probe_Wcet + 2 * Drive_Context_Switch;
    Drive_Probe_B : constant := Drive_Critical_Section;
 
    function Panel_Probe_Up (W : Window) return Time is
@@ -327,8 +324,8 @@ is
    Supervisor_Ports_Done : constant := 415_000;
    Supervisor_Ports_W : constant := Supervisor_Ports_Done - Supervision_J;
    Supervisor_Ports_Needs : constant :=
-     2 * Panel_Context_Switch + Link_Watch_Panel_Budget
-     + Supervisor_Ports_Budget + Supervision_B
+     2 * Panel_Context_Switch + Link_Watch_Panel_Wcet
+     + Supervisor_Ports_Wcet + Supervision_B
      + Reception_Panel_Up (Supervisor_Ports_W);
    pragma Compile_Time_Error (Supervisor_Ports_W /= Supervisor_Ports_Needs,
       "supervisor.ports claims a wrong response time");
@@ -351,7 +348,7 @@ is
    Servo_Ports_Done : constant := 415_000;
    Servo_Ports_W : constant := Servo_Ports_Done - Control_J;
    Servo_Ports_Needs : constant :=
-     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
+     2 * Drive_Context_Switch + Link_Watch_Drive_Wcet + Servo_Ports_Wcet
      + Control_B + Reception_Drive_Up (Servo_Ports_W);
    pragma Compile_Time_Error (Servo_Ports_W /= Servo_Ports_Needs,
       "servo.ports claims a wrong response time");
@@ -360,8 +357,8 @@ is
    Servo_Control_Done : constant := 765_000;
    Servo_Control_W : constant := Servo_Control_Done - Control_J;
    Servo_Control_Needs : constant :=
-     2 * Drive_Context_Switch + Link_Watch_Drive_Budget + Servo_Ports_Budget
-     + Servo_Drive_Budget + Servo_Control_Budget + Control_B
+     2 * Drive_Context_Switch + Link_Watch_Drive_Wcet + Servo_Ports_Wcet
+     + Servo_Drive_Wcet + Servo_Control_Wcet + Control_B
      + Reception_Drive_Up (Servo_Control_W);
    pragma Compile_Time_Error (Servo_Control_W /= Servo_Control_Needs,
       "servo.control claims a wrong response time");

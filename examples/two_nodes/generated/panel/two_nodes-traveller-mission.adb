@@ -10,15 +10,32 @@ is
    with Post => Is_Selection (Selected'Result, Self, Now, Ins)
    is
    begin
-      for T in Transition loop
-         if Enabled (T, Self, Now, Ins) then
-            return T;
-         end if;
-         pragma Loop_Invariant
-           ((for all J in Transition'First .. T =>
-                not Enabled (J, Self, Now, Ins)));
-      end loop;
-      return None;
+      case Now is
+         when On_Servo_Lost =>
+            return (if Enabled (Lost, Self, Now, Ins) then Lost else None);
+         when On_Bus_Failed =>
+            return
+              (if Enabled (Cut_Off_Early, Self, Now, Ins) then Cut_Off_Early
+               elsif Enabled (Cut_Off, Self, Now, Ins) then Cut_Off
+               elsif Enabled (Cut_Off_Besides, Self, Now, Ins)
+                  then Cut_Off_Besides
+               elsif Enabled (Still_Cut_Off, Self, Now, Ins)
+                  then Still_Cut_Off
+               else None);
+         when On_Bus_Back =>
+            return
+              (if Enabled (Connected, Self, Now, Ins) then Connected
+               else None);
+         when Conditions =>
+            return
+              (if Enabled (There, Self, Now, Ins) then There
+               elsif Enabled (Home, Self, Now, Ins) then Home
+               elsif Enabled (Go, Self, Now, Ins) then Go
+               elsif Enabled (Again, Self, Now, Ins) then Again
+               else None);
+         when others =>
+            return None;
+      end case;
    end Selected;
 
    package Chart

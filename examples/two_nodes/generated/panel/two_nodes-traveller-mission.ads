@@ -31,6 +31,32 @@ is
    subtype Firing is Selection range Initial_Entry .. Again;
    subtype Transition is Selection range There .. Again;
 
+   function In_Source
+     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
+     (case T is
+        when There => Leaf = Mission_States.Outward,
+        when Home => Leaf = Mission_States.Homeward,
+        when Go | Cut_Off_Early => Leaf = Mission_States.Waiting,
+        when Lost | Cut_Off => Leaf in Mission_States.Travelling,
+        when Cut_Off_Besides | Again => Leaf = Mission_States.Safe,
+        when Still_Cut_Off | Connected => Leaf = Mission_States.Safe_Off_Bus)
+   with Inline_Always;
+   --  The source of each transition: an active leaf, or an active state
+   --  around it.
+
+   function Target
+     (T : Firing; Leaf : Mission_States.Leaf) return Mission_States.Leaf is
+     (case T is
+        when Initial_Entry | Again => Mission_States.Waiting,
+        when There => Mission_States.Homeward,
+        when Home | Go => Mission_States.Outward,
+        when Lost | Connected => Mission_States.Safe,
+        when Cut_Off_Early | Cut_Off | Cut_Off_Besides =>
+           Mission_States.Safe_Off_Bus,
+        when Still_Cut_Off => Leaf);
+   --  The leaf that each transition leads to; that of a composite is its
+   --  default.
+
    --  The data that this region alone writes.
    type Variables is record
       Goal : Two_Nodes.Position := 0;
@@ -47,18 +73,6 @@ is
       Leaf    : Mission_States.Leaf := Mission_States.Waiting;
       Data    : Variables;
    end record;
-
-   function In_Source
-     (T : Transition; Leaf : Mission_States.Leaf) return Boolean is
-     (case T is
-        when There => Leaf = Mission_States.Outward,
-        when Home => Leaf = Mission_States.Homeward,
-        when Go | Cut_Off_Early => Leaf = Mission_States.Waiting,
-        when Lost | Cut_Off => Leaf in Mission_States.Travelling,
-        when Cut_Off_Besides | Again => Leaf = Mission_States.Safe,
-        when Still_Cut_Off | Connected => Leaf = Mission_States.Safe_Off_Bus);
-   --  The declared chart: the source of each transition. Is it the leaf, or
-   --  around it?
 
    function Enabled
      (T : Transition; Self : Region; Now : Occurrence; Ins : Inputs)
@@ -78,20 +92,9 @@ is
            when Still_Cut_Off => Now = On_Bus_Failed,
            when Connected => Now = On_Bus_Back,
            when Again =>
-              Now = Conditions and then Ins.Report.State = Ravenchart.Fresh));
+              Now = Conditions and then Ins.Report.State = Ravenchart.Fresh))
+   with Inline_Always;
    --  The trigger and the guard of each transition.
-
-   function Target
-     (T : Firing; Leaf : Mission_States.Leaf) return Mission_States.Leaf is
-     (case T is
-        when Initial_Entry | Again => Mission_States.Waiting,
-        when There => Mission_States.Homeward,
-        when Home | Go => Mission_States.Outward,
-        when Lost | Connected => Mission_States.Safe,
-        when Cut_Off_Early | Cut_Off | Cut_Off_Besides =>
-           Mission_States.Safe_Off_Bus,
-        when Still_Cut_Off => Leaf);
-   --  The leaf it leads to; that of a composite is its default.
 
    function Is_Selection
      (Chosen : Selection; Self : Region; Now : Occurrence; Ins : Inputs)
