@@ -3,16 +3,16 @@
 
 """Results of earlier proofs, kept by the content that they are about.
 
-A key is the SHA-256 over gnatprove's version, the run's settings, and the name and bytes of every
-file that it may read: another byte, tool or switch is another key. Entries are in `kept`; one
-that cannot be read is proved again. The entries are trusted: see ASM-016 in
-proofs/assumptions.md.
+A key is the SHA-256 over gnatprove's version, the run's settings, and the name and code of every
+file that it may read: other code, another tool or switch is another key. Comments and layout are
+no code (`code`). Entries are in `kept`; one that cannot be read is proved again. The entries are
+trusted: see ASM-016 in proofs/assumptions.md.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,17 +20,18 @@ from typing import TYPE_CHECKING, Any
 from ravenchart.paths import ROOT
 from ravenchart.tools import kept
 
+from . import code
 from .spark_results import Entity, Outside, Results
 
 if TYPE_CHECKING:
     from .proving import ProofTask
 
-FORMAT = 2
+FORMAT = 3
 """Part of each key: raised when what an entry holds changes."""
 KIND = "proofs"
 
 
-def key(version: str, task: ProofTask, inputs: Mapping[Path, str]) -> str:
+def key(version: str, task: ProofTask, inputs: Iterable[Path]) -> str:
     """A digest of all that the results depend on; the folder of the objects is no part of it."""
     scenario = {n: v for n, v in sorted(task.scenario.items()) if n != "RAVENCHART_BUILD"}
     base = task.project.resolve().parent
@@ -42,7 +43,7 @@ def key(version: str, task: ProofTask, inputs: Mapping[Path, str]) -> str:
         task.warnings,
         task.whole,
         sorted(task.units),
-        sorted((_place(path, base), digest) for path, digest in inputs.items()),
+        sorted((_place(path, base), code.digest(path.read_bytes())) for path in inputs),
     ]
     return kept.digest(parts)
 
