@@ -1,7 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Times and shares as people read them, never rounded to the unsafe side."""
+"""Times and shares in files and pages: exact, or to a tenth of a us and never to the unsafe side.
+
+`ravenchart.rounded` has those of the terminal and of messages.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,8 @@ from fractions import Fraction
 EXACT_DIGITS = 18
 """A share whose denominator has more digits is rounded up to so many decimal places."""
 
-MS = 1_000_000
-"""Nanoseconds in a millisecond."""
+US, MS = 1_000, 1_000_000
+"""Nanoseconds in a microsecond and in a millisecond."""
 
 _UNITS = ((1_000_000_000, "s"), (1_000_000, "ms"), (1_000, "us"), (1, "ns"))
 
@@ -24,9 +27,12 @@ def duration(ns: int) -> str:
     return "0 us"
 
 
-def spoken(ns: int) -> str:
-    """A time in a sentence: in us below 1 ms, else in ms; rounded up to a tenth of a us."""
-    return f"{milliseconds(ns)} ms" if abs(ns) >= MS else f"{microseconds(ns)} us"
+def exact_time(ns: int) -> str:
+    """A time in ms from 1 ms on, else in us, with all its digits: ``9.8003 ms``."""
+    length, unit = (MS, "ms") if abs(ns) >= MS else (US, "us")
+    whole, rest = divmod(abs(ns), length)
+    decimals = f"{length + rest}"[1:].rstrip("0")
+    return ("-" if ns < 0 else "") + f"{whole}" + (f".{decimals}" if decimals else "") + f" {unit}"
 
 
 def microseconds(ns: int) -> str:
@@ -42,17 +48,6 @@ def milliseconds(ns: int) -> str:
     sign, tenths = ("-", -tenths) if tenths < 0 else ("", tenths)
     part = f"{tenths % 10_000:04}".rstrip("0")
     return f"{sign}{tenths // 10_000}" + (f".{part}" if part else "")
-
-
-def seconds(ns: int) -> str:
-    """A point in time, in s to the millisecond."""
-    return f"{ns / 1e9:.3f} s"
-
-
-def percent(share: Fraction) -> str:
-    """A share as a percentage, rounded up to a tenth."""
-    tenths = -(-share.numerator * 1000 // share.denominator)
-    return f"{tenths // 10}.{tenths % 10} %"
 
 
 def ratio(share: Fraction) -> str:

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from ravenchart.gen.language.terms import InState, leaves
 from ravenchart.gen.model.statechart import (
     After,
     Completion,
     Every,
-    Lane,
     NestedRegion,
     OnEvent,
     PseudoKind,
@@ -30,10 +30,16 @@ from ravenchart.gen.model.statechart import (
     When,
 )
 
-RegionKey = tuple[str | None, str]
-"""A region inside the chart: the state that has it, and its name; (None, "") is all of it."""
 
-TOP: RegionKey = (None, "")
+class RegionKey(NamedTuple):
+    """A region inside a chart: the state that has it, and its name."""
+
+    owner: str | None
+    name: str
+
+
+TOP = RegionKey(None, "")
+"""The top-level region."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,17 +81,19 @@ class ChartTree:
     def slots(self) -> dict[str, RegionKey]:
         """The region that holds each vertex."""
         vertices: tuple[State | Pseudostate, ...] = (*self.region.states, *self.region.pseudostates)
-        return {v.name: (v.parent, v.region if v.parent is not None else "") for v in vertices}
+        return {
+            v.name: TOP if v.parent is None else RegionKey(v.parent, v.region) for v in vertices
+        }
 
     @cached_property
     def chains(self) -> dict[str, tuple[str, ...]]:
         """Each vertex and its enclosing states, innermost first."""
         found: dict[str, tuple[str, ...]] = {}
         for name in self.slots:
-            chain, at = [], self.slots[name][0]
+            chain, at = [], self.slots[name].owner
             while at is not None:
                 chain.append(at)
-                at = self.slots[at][0]
+                at = self.slots[at].owner
             found[name] = (name, *chain)
         return found
 
@@ -101,17 +109,17 @@ class ChartTree:
     @cached_property
     def nested(self) -> dict[RegionKey, NestedRegion]:
         """The regions of the states."""
-        return {(s.name, r.name): r for s in self.region.states for r in s.regions}
+        return {RegionKey(s.name, r.name): r for s in self.region.states for r in s.regions}
 
     @cached_property
-    def lanes(self) -> tuple[Lane, ...]:
-        """The top-level region and the orthogonal regions, inner before outer."""
-        return self.region.lanes()
+    def concurrent_regions(self) -> tuple[RegionKey, ...]:
+        """The orthogonal regions, inner before outer; last the top-level region."""
+        return tuple(RegionKey(*one) for one in self.region.concurrent_regions())
 
     @cached_property
-    def lane_of(self) -> dict[str, Lane]:
-        """The top-level or orthogonal region that each state stands in."""
-        return {name: self.region.lane(name) for name in self.states}
+    def concurrent_region_of(self) -> dict[str, RegionKey]:
+        """The innermost top-level or orthogonal region around each state."""
+        return {name: RegionKey(*self.region.concurrent_region(name)) for name in self.states}
 
     @cached_property
     def asks_own(self) -> bool:
@@ -124,17 +132,16 @@ class ChartTree:
 
     def determines(self, active: tuple[str, ...], state: str) -> bool:
         """Whether a configuration, or a part or union of parts, says if a state is active."""
-        lane = self.lane_of[state]
-        if lane.owner is None or any(self.lane_of[name] == lane for name in active):
+        region = self.concurrent_region_of[state]
+        if region.owner is None or any(self.concurrent_region_of[n] == region for n in active):
             return True
-        return lane.owner not in active and self.determines(active, lane.owner)
+        return region.owner not in active and self.determines(active, region.owner)
 
-    def lane_at(self, slot: RegionKey) -> Lane:
-        """The top-level or orthogonal region that the states of a region stand in."""
-        owner, name = slot
-        if owner is None:
-            return self.lanes[-1]
-        return Lane(name, owner) if owner in self.orthogonal else self.lane_of[owner]
+    def concurrent_region_around(self, slot: RegionKey) -> RegionKey:
+        """The top-level or orthogonal region in which the states of a region are."""
+        if slot.owner is None or slot.owner in self.orthogonal:
+            return slot
+        return self.concurrent_region_of[slot.owner]
 
     @cached_property
     def orthogonal(self) -> frozenset[str]:
@@ -143,9 +150,9 @@ class ChartTree:
 
     def regions_of(self, state: str) -> tuple[RegionKey, ...]:
         """The regions of a state, in model order."""
-        return tuple((state, region.name) for region in self.states[state].regions)
+        return tuple(RegionKey(state, region.name) for region in self.states[state].regions)
 
-    def fills_lane(self, state: str) -> bool:
+    def is_innermost(self, state: str) -> bool:
         """Whether a state is innermost in its orthogonal region: it has no region, or several."""
         return len(self.states[state].regions) != 1
 
@@ -190,11 +197,11 @@ class ChartTree:
                 found |= {around, *(s for s in self.nested if self.inside(s, around))}
         return frozenset(found)
 
-    def lane_slots(self, vertex: str) -> Iterator[RegionKey]:
+    def inner_regions(self, vertex: str) -> Iterator[RegionKey]:
         """The regions that a vertex is in, as far as that of an orthogonal state around it."""
         for name in self.chains[vertex]:
             yield self.slots[name]
-            owner = self.slots[name][0]
+            owner = self.slots[name].owner
             if owner is not None and self.states[owner].is_orthogonal:
                 return
 
@@ -209,12 +216,12 @@ class ChartTree:
             path = [n for n in self.path(initial.target, slot) if n in self.states]
             found.update(path)
             inside = {self.slots[name] for name in path}
-            waiting += [s for s in self.nested if s[0] in path and s not in inside]
+            waiting += [s for s in self.nested if s.owner in path and s not in inside]
         return tuple(name for name in self.states if name in found)
 
     def inside(self, slot: RegionKey, around: RegionKey) -> bool:
-        """Whether the owner of a region stands in another."""
-        owner = slot[0]
+        """Whether the owner of a region is in another."""
+        owner = slot.owner
         return owner is not None and any(self.slots[s] == around for s in self.chains[owner])
 
     def path(self, vertex: str, boundary: RegionKey) -> tuple[str, ...]:
@@ -227,21 +234,23 @@ class ChartTree:
         raise ValueError(f"{vertex} is not in {boundary}")
 
     def below(self, state: str, vertex: str) -> RegionKey:
-        """The region of a state that a vertex inside it stands in, at any depth."""
-        return next(self.slots[n] for n in self.chains[vertex] if self.slots[n][0] == state)
+        """The region of a state in which a vertex is, at any depth."""
+        return next(self.slots[n] for n in self.chains[vertex] if self.slots[n].owner == state)
 
     def around(self, vertex: str) -> tuple[str, ...]:
         """The states around a vertex, innermost first."""
         return self.chains[vertex][1:]
 
-    def places(self, vertex: str) -> tuple[RegionKey, ...]:
+    def regions_around(self, vertex: str) -> tuple[RegionKey, ...]:
         """The regions that a vertex is in, innermost first."""
         return tuple(self.slots[name] for name in self.chains[vertex])
 
     def common(self, first: str, *others: str) -> RegionKey:
         """The innermost region that holds all: an external transition leaves states inside it."""
-        around = [self.places(vertex) for vertex in others]
-        return next(one for one in self.places(first) if all(one in other for other in around))
+        around = [self.regions_around(vertex) for vertex in others]
+        return next(
+            one for one in self.regions_around(first) if all(one in other for other in around)
+        )
 
     def around_all(self, vertices: tuple[str, ...]) -> str:
         """The innermost state around all of them."""

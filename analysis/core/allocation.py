@@ -191,12 +191,12 @@ def checked(
     rank = sorted({task.priority for task in above})
     lifted = [replace(task, priority=len(tasks) + 1 + rank.index(task.priority)) for task in above]
     home = {activity.name: table[0].name for table in ordered for activity in table}
-    cost = {table[0].name: sum(activity.wcet for activity in table) for table in ordered}
+    wcets = {table[0].name: sum(activity.wcet for activity in table) for table in ordered}
     held = []
     for section in sections:
         user = home.get(section.user, section.user)
         #  No job is inside an object for longer than it takes.
-        length = min(section.length, cost.get(user, section.length))
+        length = min(section.length, wcets.get(user, section.length))
         held.append(Section(section.resource, user, length))
     responses = analyse_tasks((*tasks, *lifted), held, platforms)
     return Allocation(ordered, tasks, responses[: len(tasks)])
@@ -219,15 +219,15 @@ def _task(table: Table, priority: int, *, phased: bool) -> Task:
                 f"the shortest of its table, not {activity.period}"
             )
     count = min(FRAME_LIMIT, max(activity.period // period for activity in table))
-    costs = [0] * count
+    wcets = [0] * count
     phases: dict[str, int] = {}
     for activity in sorted(table, key=lambda activity: (activity.period, -activity.wcet)):
         every = activity.period // period
         choice = range(min(every, count)) if phased else range(1)
-        phase = min(choice, key=lambda k: max(costs[k::every]))
+        phase = min(choice, key=lambda k: max(wcets[k::every]))
         phases[activity.name] = phase
         for k in range(phase, count, every):
-            costs[k] += activity.wcet
+            wcets[k] += activity.wcet
     rows = tuple(
         TableRow(activity.name, activity.wcet, activity.period // period, phases[activity.name])
         for activity in table

@@ -115,7 +115,7 @@ def responses_in_place(
         for other in (frame, *above):
             if delays.get(other.name, 0) is None:
                 level = FrameLevel((*above, frame, *below), len(above) + 1, bus, known)
-                return FrameResponse(frame, level, None, reason=Reason.RIVAL)
+                return FrameResponse(frame, level, None, reason=Reason.DELAYED)
         return can.response_under(frame, above, below, bus, known)
 
     return response

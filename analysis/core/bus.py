@@ -31,7 +31,8 @@ class Frame:
 
         ``rank``      its place in arbitration, lower wins (`frames.rank`); of two equal ranks
                       either may go first, each time anew
-        ``cost``      C: longest transmission with the three bits to the next frame, above 0
+        ``transmission_time``
+                      C: the longest, with the three bits to the next frame, above 0
         ``period``    T: distance of its queuing events (least when ``sporadic``), above 0
         ``deadline``  D: from the event that makes the sender queue it, above 0
         ``jitter``    J: longest time from that event to the queuing: the sender's response
@@ -48,7 +49,7 @@ class Frame:
     rank: int
     period: int
     deadline: int
-    cost: int
+    transmission_time: int
     jitter: int = 0
     queue: str = ""
     best: int = 0
@@ -58,14 +59,19 @@ class Frame:
     def __post_init__(self) -> None:
         """Refuse values out of range, with a ValueError that names field and frame."""
         owner = f"message {self.name}"
-        positive(owner, period=self.period, deadline=self.deadline, cost=self.cost)
+        positive(
+            owner,
+            period=self.period,
+            deadline=self.deadline,
+            transmission_time=self.transmission_time,
+        )
         natural(owner, rank=self.rank, jitter=self.jitter, best=self.best)
-        at_most(owner, "best", self.best, self.cost)
+        at_most(owner, "best", self.best, self.transmission_time)
 
     @property
     def utilisation(self) -> Fraction:
         """Share of the bus that it needs at its longest and most frequent."""
-        return Fraction(self.cost, self.period)
+        return Fraction(self.transmission_time, self.period)
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ class Contender:
     def of(cls, task: Task, platform: Platform, serial: int) -> Contender:
         """``task`` on that platform; ``serial`` is its unique number."""
         jitter, demand = jitter_of(task, platform), demand_of(task, platform)
-        goals = [(cost, frame, WHOLE) for frame, cost in enumerate(demand.costs)]
+        goals = [(work, frame, WHOLE) for frame, work in enumerate(demand.wcets)]
         if task.rows:
             before = task.wcet + switch_time(task, platform)
             goals += _row_goals(task, before)
@@ -101,11 +101,11 @@ def response(
         at = window.fork() if several else window
         end = (job + 1) * task.period - own.jitter
         over = True
-        for cost, frame, number in goals:
-            settled = settled and at.settle(cost, effort)
+        for work, frame, number in goals:
+            settled = settled and at.settle(work, effort)
             if number == WHOLE and at.length > end:
                 over = False
-            if number != WHOLE or own.demand.costs[frame]:
+            if number != WHOLE or own.demand.wcets[frame]:
                 worst[number].note(
                     own.jitter + at.length - job * task.period, job, frame, at.length
                 )
@@ -121,10 +121,10 @@ def response(
 def _goals_of(own: Contender, job: int, blocked: int) -> list[Goal]:
     """The goals of one job with the execution time of the jobs before it, by time."""
     if len(own.goals) == 1:
-        cost, frame, number = own.goals[0]
-        return [(blocked + job * cost + cost, frame, number)]
-    before = [blocked + own.demand.before(job, frame) for frame in range(len(own.demand.costs))]
-    return sorted((before[frame] + cost, frame, number) for cost, frame, number in own.goals)
+        work, frame, number = own.goals[0]
+        return [(blocked + job * work + work, frame, number)]
+    before = [blocked + own.demand.before(job, frame) for frame in range(len(own.demand.wcets))]
+    return sorted((before[frame] + work, frame, number) for work, frame, number in own.goals)
 
 
 def repeats_after(level: Level, period: int, limit: int) -> float:

@@ -39,7 +39,7 @@ from .bus import Bus, Frame
 from .can_response import FrameLevel, FrameResponse, frame_response
 from .checks import distinct
 from .responses import Reason
-from .window import Effort, Load, Source, Window, fixed_cost, rate
+from .window import Effort, Load, Source, Window, constant_source, rate
 
 FRAME_EFFORT = 200_000
 """Changes of release numbers that one frame's analysis may take; then it has no bound."""
@@ -72,17 +72,17 @@ def _analysed(frames: tuple[Frame, ...], bus: Bus) -> tuple[FrameResponse, ...]:
 
 def response_under(
     frame: Frame,
-    rivals: Sequence[Frame],
+    interfering: Sequence[Frame],
     others: Sequence[Frame],
     bus: Bus,
     delays: Mapping[str, int] | None = None,
 ) -> FrameResponse:
-    """The response when ``rivals`` are more urgent than ``frame`` and ``others`` are less.
+    """The response when ``interfering`` are more urgent than ``frame`` and ``others`` are less.
 
     Ranks do not count. ``delays`` is needed for frames with first-in first-out queues, all
     ``reloaded`` (`delays_in_any_order`); all other frames interfere with such a frame.
     """
-    level = FrameLevel((*rivals, frame, *others), len(rivals) + 1, bus, delays or {})
+    level = FrameLevel((*interfering, frame, *others), len(interfering) + 1, bus, delays or {})
     return _alone(frame, level, Effort(FRAME_EFFORT))
 
 
@@ -119,14 +119,14 @@ def _queue_delays(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> Delays:
     busiest = _busiest(order, bus, effort) if queued else None
     if busiest is None:
         return dict.fromkeys(frame.name for frame in queued)
-    longest = {frame.name: busiest - frame.cost for frame in queued}
+    longest = {frame.name: busiest - frame.transmission_time for frame in queued}
     delays: dict[str, int] = dict.fromkeys(longest, 0)
     for _ in range(ROUNDS):
         found = dict(longest)
         for frame in queued:
             sent = _in_queue(frame, order, bus, delays, effort).bound
             if sent is not None:
-                waited = sent - frame.cost - frame.jitter
+                waited = sent - frame.transmission_time - frame.jitter
                 found[frame.name] = min(waited, longest[frame.name])
         if found == delays:
             return delays
@@ -140,13 +140,13 @@ def _busiest(order: tuple[Frame, ...], bus: Bus, effort: Effort) -> int | None:
     window, used = Window(), Load()
     window.length = 1  # zero is a fixed point too
     for number, frame in enumerate(order):
-        source = fixed_cost(frame.period, frame.jitter, frame.cost)
+        source = constant_source(frame.period, frame.jitter, frame.transmission_time)
         used.add(source)
         window.add(number, source)
     fixed = bus.unknown
     if bus.errors is not None:
-        fixed += (bus.errors.burst - 1) * level.error_cost
-        window.add(len(order), fixed_cost(bus.errors.period, 0, level.error_cost))
+        fixed += (bus.errors.burst - 1) * level.error_overhead
+        window.add(len(order), constant_source(bus.errors.period, 0, level.error_overhead))
     if _overloaded(level, used):
         return None
     allowed = Effort(min(FRAME_EFFORT, effort.left))
@@ -167,7 +167,7 @@ def _of_bus(
         members = list(group)
         level = FrameLevel(order, members[-1][0], bus, known)
         if any(frame.queue and delays[frame.name] is None for _, frame in members):
-            reason = reason or Reason.RIVAL
+            reason = reason or Reason.DELAYED
         for _, frame in members:
             used.add(_source(frame, known))
         for _, frame in members:
@@ -192,7 +192,9 @@ def _of_bus(
 
 def _source(frame: Frame, delays: Mapping[str, int], later: int = 0) -> Source:
     """The demand of a frame on the bus, late by its jitter, its queue delay and ``later``."""
-    return fixed_cost(frame.period, frame.jitter + delays.get(frame.name, 0) + later, frame.cost)
+    return constant_source(
+        frame.period, frame.jitter + delays.get(frame.name, 0) + later, frame.transmission_time
+    )
 
 
 def _obstacle(
@@ -201,7 +203,7 @@ def _obstacle(
     """The reason why this frame and those below have no bound; lengthens the windows."""
     if _overloaded(level, used):
         return Reason.OVERLOAD
-    if waiting.settle(0, effort) and busy.settle(frame.cost, effort):
+    if waiting.settle(0, effort) and busy.settle(frame.transmission_time, effort):
         return None
     return Reason.EFFORT
 
@@ -209,7 +211,7 @@ def _obstacle(
 def _overloaded(level: FrameLevel, used: Load) -> bool:
     """Whether the frames and the errors of a level need more than the bus has."""
     errors = level.bus.errors
-    extra = 0 if errors is None else rate(fixed_cost(errors.period, 0, level.error_cost))
+    extra = 0 if errors is None else rate(constant_source(errors.period, 0, level.error_overhead))
     return used.above_one(lambda: level.load, extra)
 
 
@@ -225,13 +227,13 @@ def _in_queue(
         whole = FrameLevel(order, len(order), bus, known)
         used = Load()
         for other in order:
-            used.add(fixed_cost(other.period, 0, other.cost))
+            used.add(constant_source(other.period, 0, other.transmission_time))
         if _overloaded(whole, used):
             return FrameResponse(frame, whole, None, reason=Reason.OVERLOAD)
         return FrameResponse(frame, level, None, reason=Reason.EFFORT)
     for other in order[:reach]:
         if other.queue != frame.queue and delays.get(other.name, 0) is None:
-            return FrameResponse(frame, level, None, reason=Reason.RIVAL)
+            return FrameResponse(frame, level, None, reason=Reason.DELAYED)
     return _alone(frame, level, effort)
 
 
@@ -241,11 +243,14 @@ def _alone(frame: Frame, level: FrameLevel, effort: Effort) -> FrameResponse:
     effort.left -= level.reach
     for number, other in enumerate(level.order[: level.reach]):
         late = level.jitter(other, frame)
-        source = fixed_cost(other.period, late, other.cost)
+        source = constant_source(other.period, late, other.transmission_time)
         used.add(source)
         if other.name != frame.name:
             busy.add(number, source)
-            waiting.add(number, fixed_cost(other.period, late + level.bus.bit_time, other.cost))
+            waiting.add(
+                number,
+                constant_source(other.period, late + level.bus.bit_time, other.transmission_time),
+            )
     if _overloaded(level, used):
         return FrameResponse(frame, level, None, reason=Reason.OVERLOAD)
     return frame_response(frame, level, waiting, busy, effort)

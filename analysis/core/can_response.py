@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from .bus import Bus, Frame
 from .responses import Reason
-from .window import Effort, Window, fixed_cost, releases_in
+from .window import Effort, Window, constant_source, releases_in
 
 ERRORS = 1 << 40
 """Serial number of the errors; those of frames are below."""
@@ -45,14 +45,14 @@ class FrameLevel:
         """Share of the bus that these frames and errors need."""
         load = sum((frame.utilisation for frame in self.order[: self.reach]), Fraction(0))
         errors = self.bus.errors
-        return load if errors is None else load + Fraction(self.error_cost, errors.period)
+        return load if errors is None else load + Fraction(self.error_overhead, errors.period)
 
     @property
-    def error_cost(self) -> int:
+    def error_overhead(self) -> int:
         """The time lost to one error at this level; 0 where none are assumed."""
         if self.bus.errors is None:
             return 0
-        longest = max(frame.cost for frame in self.order[: self.reach])
+        longest = max(frame.transmission_time for frame in self.order[: self.reach])
         return self.bus.errors.bits * self.bus.bit_time + longest
 
     @property
@@ -60,8 +60,8 @@ class FrameLevel:
         """The longest less urgent frame and its time; no name for an undeclared frame."""
         longest = ("", self.bus.unknown)
         for frame in self.order[self.reach :]:
-            if frame.cost > longest[1]:
-                longest = (frame.name, frame.cost)
+            if frame.transmission_time > longest[1]:
+                longest = (frame.name, frame.transmission_time)
         return longest
 
     def jitter(self, frame: Frame, towards: Frame) -> int:
@@ -79,7 +79,7 @@ class FrameResponse:
     the ``reason``. It is attained by instance ``worst_instance`` (from 0) of the
     ``instances`` in the busy period, which waits ``window`` from its start:
 
-        jitter + window + cost - worst_instance * period = bound
+        jitter + window + transmission_time - worst_instance * period = bound
         blocked + own + interference + errors = window
     """
 
@@ -119,7 +119,7 @@ class FrameResponse:
     @property
     def own(self) -> int:
         """Earlier instances of the same message in the busy period."""
-        return self.worst_instance * self.frame.cost
+        return self.worst_instance * self.frame.transmission_time
 
     @property
     def errors(self) -> int:
@@ -127,7 +127,7 @@ class FrameResponse:
         model = self.level.bus.errors
         if model is None or self.bound is None:
             return 0
-        return len(self.error_times) * self.level.error_cost
+        return len(self.error_times) * self.level.error_overhead
 
     @property
     def error_times(self) -> list[int]:
@@ -135,8 +135,8 @@ class FrameResponse:
         model = self.level.bus.errors
         if model is None or self.bound is None:
             return []
-        count = releases_in(self.window, model.period, self.frame.cost)
-        later = [max(0, n * model.period - self.frame.cost) for n in range(count)]
+        count = releases_in(self.window, model.period, self.frame.transmission_time)
+        later = [max(0, n * model.period - self.frame.transmission_time) for n in range(count)]
         return [0] * (model.burst - 1) + later
 
     def queued(self, other: Frame) -> list[int]:
@@ -154,7 +154,7 @@ class FrameResponse:
         for other in self.level.order[: self.level.reach]:
             if other.name != self.frame.name:
                 count = len(self.queued(other))
-                found.append(FrameInterference(other, count, count * other.cost))
+                found.append(FrameInterference(other, count, count * other.transmission_time))
         return tuple(sorted(found, key=lambda share: -share.time))
 
 
@@ -169,19 +169,19 @@ def frame_response(
     fixed = level.blocker[1]
     errors = level.bus.errors
     if errors is not None:
-        cost = level.error_cost
-        fixed += (errors.burst - 1) * cost
-        waiting.add(ERRORS, fixed_cost(errors.period, frame.cost, cost))
-        busy.add(ERRORS, fixed_cost(errors.period, 0, cost))
+        lost = level.error_overhead
+        fixed += (errors.burst - 1) * lost
+        waiting.add(ERRORS, constant_source(errors.period, frame.transmission_time, lost))
+        busy.add(ERRORS, constant_source(errors.period, 0, lost))
     pattern = math.inf
     bound, worst, window, instance = -1, 0, 0, 0
-    while waiting.settle(fixed + instance * frame.cost, effort) and effort.left > 0:
+    while waiting.settle(fixed + instance * frame.transmission_time, effort) and effort.left > 0:
         effort.left -= 1
-        late = frame.jitter + waiting.length + frame.cost - instance * frame.period
+        late = frame.jitter + waiting.length + frame.transmission_time - instance * frame.period
         if late > bound:
             bound, worst, window = late, instance, waiting.length
         instance += 1
-        if not busy.settle(fixed + instance * frame.cost, effort):
+        if not busy.settle(fixed + instance * frame.transmission_time, effort):
             break
         over = busy.length <= instance * frame.period - frame.jitter
         if instance == 1 and not over:

@@ -33,7 +33,7 @@ from .offsets import closer
 from .platform import Platform
 from .responses import Level, Reason, Response, jitter_of, release_time, switch_time
 from .tasks import Task
-from .window import Effort, Load, Window, fixed_cost
+from .window import Effort, Load, Window, constant_source
 
 TASK_EFFORT = 200_000
 """Changes of release numbers that one task's analysis may take; then it has no bound."""
@@ -104,35 +104,35 @@ def _quickly(order: tuple[Task, ...], held: Mapping[str, Section], platform: Pla
 
     An empty list where the library does not help: for few tasks, or overheads above all tasks.
     """
-    if len(order) < WORTH_IT or platform.release or platform.tick_cost:
+    if len(order) < WORTH_IT or platform.release or platform.tick_wcet:
         return []
     for task in order:
         if task.jitter or task.rows or task.timed or task.offset is not None:
             return []
-    costs = [task.wcet for task in order]
+    wcets = [task.wcet for task in order]
     if platform.context_switch:
-        costs = [task.wcet + switch_time(task, platform) for task in order]
+        wcets = [task.wcet + switch_time(task, platform) for task in order]
     blocked = [held_up(task, held.get(task.name)) for task in order]
     last = {task.priority: number for number, task in enumerate(order)}
     return busy_periods(
-        [task.period for task in order], costs, [last[task.priority] for task in order], blocked
+        [task.period for task in order], wcets, [last[task.priority] for task in order], blocked
     )
 
 
 def response_under(
     task: Task,
-    rivals: Sequence[Task],
+    interfering: Sequence[Task],
     bystanders: Sequence[Task] = (),
     blocking: Section | None = None,
     platform: Platform = NO_OVERHEAD,
 ) -> Response:
-    """The response of ``task`` when all ``rivals`` may run before it, whatever their priorities.
+    """The response of ``task`` with the interference of all ``interfering`` tasks.
 
-    ``bystanders`` are less urgent: only their releases take time.
+    Priorities do not count. Of the ``bystanders``, which are less urgent, only releases take time.
     """
-    level = Level((*rivals, task, *bystanders), len(rivals) + 1, platform)
+    level = Level((*interfering, task, *bystanders), len(interfering) + 1, platform)
     own = Contender.of(task, platform, 0)
-    others = [Contender.of(rival, platform, n) for n, rival in enumerate(rivals, 1)]
+    others = [Contender.of(other, platform, n) for n, other in enumerate(interfering, 1)]
     window, load = _beginning(level.order, platform)
     for item in (own, *others):
         load.add(item.source)
@@ -148,12 +148,12 @@ def _beginning(tasks: Sequence[Task], platform: Platform) -> tuple[Window, Load]
     """A window that holds the overheads above all ``tasks`` of a core."""
     window, load = Window(), Load()
     sources = []
-    if platform.tick_cost:
-        sources.append(fixed_cost(platform.tick_period, 0, platform.tick_cost))
+    if platform.tick_wcet:
+        sources.append(constant_source(platform.tick_period, 0, platform.tick_wcet))
     if platform.release:
         for task in tasks:
             jitter = jitter_of(task, platform)
-            sources.append(fixed_cost(task.period, jitter, release_time(task, platform)))
+            sources.append(constant_source(task.period, jitter, release_time(task, platform)))
     for number, item in enumerate(sources):
         window.add(OVERHEADS_FROM + number, item)
         load.add(item)

@@ -213,14 +213,14 @@ def _responses(
     ):
         task = response.task
         if task.core in lost and task.priority <= lost[task.core]:
-            response = replace(response, bound=None, rows=(), reason=Reason.RIVAL)
+            response = replace(response, bound=None, rows=(), reason=Reason.DELAYED)
         found[task.name] = response
     for bus, frames in network.frames.items():
         given = tuple(replace(f, jitter=f.jitter + (late[f.name] or 0)) for f in frames)
         first = min((_reach(f, given) for f in given if late[f.name] is None), default=None)
         for sent in can.analyse(given, network.buses[bus]):
             if first is not None and _level(sent.frame, given) >= first:
-                sent = replace(sent, bound=None, reason=Reason.RIVAL)
+                sent = replace(sent, bound=None, reason=Reason.DELAYED)
             found[sent.frame.name] = sent
     return found
 

@@ -34,7 +34,7 @@ WORTH_IT = 8
 
 
 def busy_periods(
-    periods: Sequence[int], costs: Sequence[int], last: Sequence[int], blocked: Sequence[int]
+    periods: Sequence[int], wcets: Sequence[int], last: Sequence[int], blocked: Sequence[int]
 ) -> list[int]:
     """The busy period at the level of each task, 0 where it is longer than the task's period.
 
@@ -45,13 +45,13 @@ def busy_periods(
     find, count = library(), len(periods)
     if find is None or count > MOST_TASKS or max(*periods, *blocked) >= LIMIT:
         return []
-    for cost, period in zip(costs, periods, strict=True):
-        if cost > period:
+    for wcet, period in zip(wcets, periods, strict=True):
+        if wcet > period:
             return []
     found = array("q", bytes(8 * count))
     given = (
         array("q", periods),
-        array("q", costs),
+        array("q", wcets),
         array("i", [level + 1 for level in last]),
         array("q", blocked),
         found,

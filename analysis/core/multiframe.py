@@ -14,36 +14,36 @@ from itertools import accumulate
 
 
 class Demand:
-    """The demand of consecutive releases: C is ``costs[k mod n]`` for release k, in ticks."""
+    """The demand of consecutive releases: C is ``wcets[k mod n]`` for release k, in ticks."""
 
-    __slots__ = ("_most", "_sums", "costs", "total")
+    __slots__ = ("_most", "_sums", "total", "wcets")
 
-    def __init__(self, costs: tuple[int, ...]) -> None:
-        """``costs`` has at least one execution time, none negative."""
-        n = len(costs)
-        self.costs = costs
-        self.total = sum(costs)
-        self._sums: tuple[int, ...] = (0, *costs)
+    def __init__(self, wcets: tuple[int, ...]) -> None:
+        """``wcets`` has at least one execution time, none negative."""
+        n = len(wcets)
+        self.wcets = wcets
+        self.total = sum(wcets)
+        self._sums: tuple[int, ...] = (0, *wcets)
         self._most: tuple[int, ...] = (0,)
         if n > 1:
-            sums = self._sums = tuple(accumulate(costs + costs, initial=0))
+            sums = self._sums = tuple(accumulate(wcets + wcets, initial=0))
             self._most = tuple(max(sums[s + k] - sums[s] for s in range(n)) for k in range(n))
 
     def most(self, count: int) -> int:
         """The most that ``count`` releases in a row can execute."""
-        cycles, rest = divmod(count, len(self.costs))
+        cycles, rest = divmod(count, len(self.wcets))
         return cycles * self.total + self._most[rest]
 
     def first(self, count: int) -> int:
         """The job of the cycle with which those releases begin; the first of several."""
-        n = len(self.costs)
+        n = len(self.wcets)
         rest = count % n
         sums = self._sums
         return next(s for s in range(n) if sums[s + rest] - sums[s] == self._most[rest])
 
     def before(self, count: int, frame: int) -> int:
         """The execution time of the ``count`` releases before job ``frame`` of the cycle."""
-        n = len(self.costs)
+        n = len(self.wcets)
         if n == 1:
             return count * self.total
         cycles, rest = divmod(count, n)
@@ -52,4 +52,4 @@ class Demand:
     @property
     def steady(self) -> tuple[int, ...] | None:
         """None when every release has the same C, else the table behind `most`."""
-        return None if len(self.costs) == 1 else self._most
+        return None if len(self.wcets) == 1 else self._most

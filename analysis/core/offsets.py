@@ -44,7 +44,7 @@ from .responses import (
 )
 from .streams import Stream
 from .tasks import Task
-from .window import Effort, Source, cost_of, fixed_cost, source
+from .window import Effort, Source, constant_source, execution_of, source
 
 INSTANTS = 10_000
 """Instants that are tried for one task at most; offsets that lead to more are left out."""
@@ -58,7 +58,7 @@ class _Arrivals:
         self.cycle = cycle
         arrivals = sorted(one for stream in streams for one in stream.arrivals(cycle))
         self.times = [time for time, _ in arrivals]
-        self.sums = list(accumulate((cost for _, cost in arrivals), initial=0))
+        self.sums = list(accumulate((wcet for _, wcet in arrivals), initial=0))
 
     def before(self, end: int) -> int:
         """The demand that arrives before ``end``, counted from a common instant."""
@@ -67,7 +67,7 @@ class _Arrivals:
 
     def late(self, start: int) -> int:
         """The demand that arrives before ``start`` and may be released from ``start`` on."""
-        return sum(s.cost(start - s.jitter, start) for s in self.streams if s.jitter)
+        return sum(s.execution(start - s.jitter, start) for s in self.streams if s.jitter)
 
     def instants(self) -> Iterator[int]:
         """The instants at which the streams release jobs as late as possible."""
@@ -148,8 +148,8 @@ class OffsetSearch:
         if platform.release:
             streams += [_released(task, platform) for task in tasks]
         cycle = math.lcm(*(task.period * task.frame_count for task in tasks))
-        self.rivals = _Arrivals(streams, cycle)
-        effort.left -= len(self.rivals.times)
+        self.interference = _Arrivals(streams, cycle)
+        effort.left -= len(self.interference.times)
         self.others = list(self._others(platform))
         self.worst = {number: Worst() for number in range(WHOLE, len(plain.task.rows))}
         assert plain.bound is not None
@@ -162,12 +162,12 @@ class OffsetSearch:
         for task in self.level.order[: self.level.reach]:
             if task.name not in self.names and task.name != self.plain.task.name:
                 yield source(task.period, jitter_of(task, platform), demand_of(task, platform))
-        if platform.tick_cost:
-            yield fixed_cost(platform.tick_period, 0, platform.tick_cost)
+        if platform.tick_wcet:
+            yield constant_source(platform.tick_period, 0, platform.tick_wcet)
         for task in self.level.order if platform.release else ():
             if task.name not in self.names:
-                cost = release_time(task, platform)
-                yield fixed_cost(task.period, jitter_of(task, platform), cost)
+                wcet = release_time(task, platform)
+                yield constant_source(task.period, jitter_of(task, platform), wcet)
 
     def found(self) -> Response:
         """The longest response over all instants."""
@@ -207,9 +207,9 @@ class OffsetSearch:
         if self.stream is None:
             return None
         first = self.stream.number(start - self.own.jitter)
-        cost = self.own.demand.costs[first % len(self.own.demand.costs)]
-        counted = self.rivals.late(start) - self.rivals.before(start)
-        found = self._settled(self.plain.blocked + cost, start, counted, 1)
+        wcet = self.own.demand.wcets[first % len(self.own.demand.wcets)]
+        counted = self.interference.late(start) - self.interference.before(start)
+        found = self._settled(self.plain.blocked + wcet, start, counted, 1)
         return found if self.effort.left > 0 else None
 
     def _attained(self, less: int) -> bool:
@@ -222,10 +222,10 @@ class OffsetSearch:
         The nearer this arrival, the longer the response can be.
         """
         late, stream = self.own.jitter, self.stream
-        starts = set(self.rivals.instants())
+        starts = set(self.interference.instants())
         if stream is None:
             return [(-late, start) for start in sorted(starts)]
-        cycle = self.rivals.cycle
+        cycle = self.interference.cycle
         starts |= {(time + late) % cycle for time, _ in stream.arrivals(cycle)}
         return sorted(((stream.offset - start + late) % stream.period - late, start)
                       for start in starts)  # fmt: skip
@@ -233,7 +233,7 @@ class OffsetSearch:
     def _try(self, start: int, lead: int) -> None:
         """The responses of all jobs of the busy period that begins at ``start``."""
         task, own, stream = self.plain.task, self.own, self.stream
-        counted = self.rivals.late(start) - self.rivals.before(start)
+        counted = self.interference.late(start) - self.interference.before(start)
         first = 0 if stream is None else stream.number(start + lead)
         blocked, job, length = self.plain.blocked, 0, 1
         if lead > 0:
@@ -244,11 +244,11 @@ class OffsetSearch:
             over = True
             arrival = lead + job * task.period
             windows = []
-            for cost, frame, number in self._goals(job, first):
-                windows.append(window := self._settled(blocked + cost, start, counted, length))
+            for work, frame, number in self._goals(job, first):
+                windows.append(window := self._settled(blocked + work, start, counted, length))
                 if number == WHOLE and window > arrival + task.period:
                     over = False
-                if number != WHOLE or own.demand.costs[frame]:
+                if number != WHOLE or own.demand.wcets[frame]:
                     self.worst[number].note(window - arrival, job, frame, window, start)
             length = min(windows)
             job += 1
@@ -264,22 +264,22 @@ class OffsetSearch:
         If the task's offset is used, its job of the cycle is known; else it may be any.
         """
         demand = self.own.demand
-        known = None if self.stream is None else (first + job) % len(demand.costs)
-        for cost, frame, number in self.own.goals:
+        known = None if self.stream is None else (first + job) % len(demand.wcets)
+        for work, frame, number in self.own.goals:
             if known is None or frame == known:
-                yield demand.before(job, frame) + cost, frame, number
+                yield demand.before(job, frame) + work, frame, number
 
     def _settled(self, fixed: int, start: int, counted: int, length: int) -> int:
         """The least window from ``length`` on that holds ``fixed`` and the demand in it.
 
         The length reached so far, where the effort does not suffice.
         """
-        rivals, others = self.rivals, self.others
+        interference, others = self.interference, self.others
         while True:
             self.effort.left -= 1 + len(others) // 4
-            needed = fixed + counted + rivals.before(start + length)
+            needed = fixed + counted + interference.before(start + length)
             for item in others:
-                needed += cost_of(item, -(-(length + item[1]) // item[0]))
+                needed += execution_of(item, -(-(length + item[1]) // item[0]))
             if needed <= length or self.effort.left <= 0:
                 return length
             length = needed

@@ -18,7 +18,7 @@ class Platform:
     and two more each further time that it suspends itself. ``release``
     is the work of the timer or interrupt that makes one job ready, each time. It runs
     above all tasks, for releases of less urgent tasks too.
-    A periodic tick takes ``tick_cost`` every ``tick_period`` above all tasks. A task
+    A periodic tick takes ``tick_wcet`` every ``tick_period`` above all tasks. A task
     that the tick releases (`Task.timed`) may be late by one period of it.
     Burns, Tindell and Wellings, Effective analysis for engineering real-time
     fixed priority schedulers (IEEE TSE 21, 1995), whose tick scheduling this
@@ -28,16 +28,16 @@ class Platform:
     context_switch: int = 0
     release: int = 0
     tick_period: int = 0
-    tick_cost: int = 0
+    tick_wcet: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse negative overheads, and a tick that costs time but has no period."""
+        """Refuse negative overheads, and a tick that takes time but has no period."""
         natural(
             "the platform",
             context_switch=self.context_switch,
             release=self.release,
             tick_period=self.tick_period,
-            tick_cost=self.tick_cost,
+            tick_wcet=self.tick_wcet,
         )
-        if self.tick_cost and not self.tick_period:
-            raise ValueError("tick_period of the platform must be above 0 where tick_cost is")
+        if self.tick_wcet and not self.tick_period:
+            raise ValueError("tick_period of the platform must be above 0 where a tick takes time")

@@ -14,7 +14,7 @@ from .multiframe import Demand
 from .platform import Platform
 from .streams import Stream
 from .tasks import TableRow, Task
-from .window import cost_of, releases_in, source
+from .window import execution_of, releases_in, source
 
 
 class Reason(Enum):
@@ -22,7 +22,7 @@ class Reason(Enum):
 
     OVERLOAD = "what runs at its level needs more than all of the resource"
     EFFORT = "none was found within the work allowed"
-    RIVAL = "something that delays it has no bound itself"
+    DELAYED = "something that delays it has no bound itself"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +64,12 @@ class Level:
     def load(self) -> Fraction:
         """Share of the core that these tasks and the overheads need."""
         platform = self.platform
-        load = Fraction(platform.tick_cost, platform.tick_period or 1)
+        load = Fraction(platform.tick_wcet, platform.tick_period or 1)
         for task in self.order:
             load += Fraction(release_time(task, platform), task.period)
         for task in self.order[: self.reach]:
             demand = demand_of(task, platform)
-            load += Fraction(demand.total, len(demand.costs) * task.period)
+            load += Fraction(demand.total, len(demand.wcets) * task.period)
         return load
 
 
@@ -166,7 +166,7 @@ class Response:
     def own(self) -> int:
         """The execution time of the worst job and of those before it in the busy period."""
         demand = demand_of(self.task, Platform())
-        return demand.before(self.worst_job, self.frame) + demand.costs[self.frame]
+        return demand.before(self.worst_job, self.frame) + demand.wcets[self.frame]
 
     @property
     def interference(self) -> tuple[Interference, ...]:
@@ -193,7 +193,7 @@ class Response:
             2 * switched,
             2 * switched * platform.context_switch,
             ticks,
-            ticks * platform.tick_cost,
+            ticks * platform.tick_wcet,
             released,
             released * platform.release,
         )
@@ -218,7 +218,7 @@ class Response:
             stream = stream_of(task, platform)
             first = stream.number(self.alignment.start - jitter)
             since = stream.offset + first * task.period - self.alignment.start
-        frames = len(demand.costs)
+        frames = len(demand.wcets)
         return [(max(0, since + n * task.period), (first + n) % frames) for n in range(count)]
 
     def uses_offset_of(self, task: Task) -> bool:
@@ -237,10 +237,10 @@ class Response:
         switches = count * switch_time(other, platform)
         if self.uses_offset_of(other):
             stream, span = stream_of(other, platform), self._span(other)
-            frame = stream.number(span[0]) % len(demand.costs)
-            return Interference(other, count, frame, stream.cost(*span) - switches)
+            frame = stream.number(span[0]) % len(demand.wcets)
+            return Interference(other, count, frame, stream.execution(*span) - switches)
         item = source(other.period, 0, demand)
-        return Interference(other, count, demand.first(count), cost_of(item, count) - switches)
+        return Interference(other, count, demand.first(count), execution_of(item, count) - switches)
 
 
 def jitter_of(task: Task, platform: Platform) -> int:

@@ -109,7 +109,11 @@ def scaled_network(network: Network, factor: Fraction, names: Collection[str] | 
         ),
         frames={
             bus: tuple(
-                replace(f, cost=_up(f.cost * factor), best=_down(f.best, factor))
+                replace(
+                    f,
+                    transmission_time=_up(f.transmission_time * factor),
+                    best=_down(f.best, factor),
+                )
                 if chosen(f.name)
                 else f
                 for f in frames

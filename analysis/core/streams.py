@@ -23,7 +23,7 @@ class Stream:
     @property
     def cycle(self) -> int:
         """The time after which it repeats."""
-        return self.period * len(self.demand.costs)
+        return self.period * len(self.demand.wcets)
 
     def number(self, time: int) -> int:
         """The number of the first job that arrives no earlier than ``time``."""
@@ -33,13 +33,13 @@ class Stream:
         """Jobs that arrive from ``begin`` on and before ``end``."""
         return self.number(end) - self.number(begin)
 
-    def cost(self, begin: int, end: int) -> int:
+    def execution(self, begin: int, end: int) -> int:
         """The execution time of those jobs."""
         count = self.count(begin, end)
-        return self.demand.before(count, self.number(end) % len(self.demand.costs))
+        return self.demand.before(count, self.number(end) % len(self.demand.wcets))
 
     def arrivals(self, until: int) -> Iterator[tuple[int, int]]:
         """Time and C of its jobs, wrapped into ``0 .. until - 1``, of whole cycles."""
-        costs = self.demand.costs
+        wcets = self.demand.wcets
         for k in range(until // self.period):
-            yield (self.offset + k * self.period) % until, costs[k % len(costs)]
+            yield (self.offset + k * self.period) % until, wcets[k % len(wcets)]

@@ -37,7 +37,7 @@ from .bus import Frame
 from .can_response import FrameResponse
 from .responses import Response, demand_of, jitter_of, release_time
 from .tasks import Task
-from .window import Effort, Source, cost_of, fixed_cost, releases_in
+from .window import Effort, Source, constant_source, execution_of, releases_in
 
 if TYPE_CHECKING:
     from .holistic import Network
@@ -54,7 +54,7 @@ class LevelItem:
     offset: int
     jitter: int
     period: int
-    cost: int
+    wcet: int
 
     def phase(self, first: LevelItem) -> int:
         """phi_jc: its first arrival after the late release of another step of its transaction."""
@@ -78,7 +78,7 @@ class _Arriving:
     def demand(self, window: int) -> int:
         """The demand of its jobs in a window."""
         later = max(0, -((self.phase - window) // self.step.period))
-        return (self.waiting + later) * self.step.cost
+        return (self.waiting + later) * self.step.wcet
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,14 +180,16 @@ def _of_task(response: Response, events: Mapping[str, str], best: Mapping[str, i
     steps = [
         LevelItem(
             task.name, best[task.name], jitter_of(task, platform), task.period,
-            max(demand_of(task, platform).costs),
+            max(demand_of(task, platform).wcets),
         )
         for task in order[: response.level.reach]
     ]  # fmt: skip
-    sources = [fixed_cost(platform.tick_period, 0, platform.tick_cost)] * bool(platform.tick_cost)
+    sources = [constant_source(platform.tick_period, 0, platform.tick_wcet)] * bool(
+        platform.tick_wcet
+    )
     for task in order if platform.release else ():
-        cost = release_time(task, platform)
-        sources.append(fixed_cost(task.period, jitter_of(task, platform), cost))
+        wcet = release_time(task, platform)
+        sources.append(constant_source(task.period, jitter_of(task, platform), wcet))
     return _level(response.task, steps, events, sources, response.blocked)
 
 
@@ -203,17 +205,17 @@ def _of_frame(
         LevelItem(
             other.name, best[other.name],
             frame.jitter if other.name == frame.name else level.jitter(other, frame),
-            other.period, other.cost,
+            other.period, other.transmission_time,
         )
         for other in level.order[: level.reach]
     ]  # fmt: skip
     errors, fixed = level.bus.errors, level.blocker[1]
     sources = []
     if errors is not None:
-        fixed += (errors.burst - 1) * level.error_cost
-        late = max(0, frame.cost - bit)  # `closing` adds a bit
-        sources.append(fixed_cost(errors.period, late, level.error_cost))
-    return _level(frame, steps, events, sources, fixed, frame.cost, bit)
+        fixed += (errors.burst - 1) * level.error_overhead
+        late = max(0, frame.transmission_time - bit)  # `closing` adds a bit
+        sources.append(constant_source(errors.period, late, level.error_overhead))
+    return _level(frame, steps, events, sources, fixed, frame.transmission_time, bit)
 
 
 def _level(
@@ -236,7 +238,7 @@ def _level(
         elif step.name in events:
             groups.setdefault(events[step.name], []).append(step)
         else:
-            alone.append(fixed_cost(step.period, step.jitter, step.cost))
+            alone.append(constant_source(step.period, step.jitter, step.wcet))
     assert own is not None
     mates = groups.pop(event, []) if event is not None else []
     others = []
@@ -244,7 +246,7 @@ def _level(
         if len(group) > 1:
             others.append(tuple(group))
         else:
-            alone.append(fixed_cost(group[0].period, group[0].jitter, group[0].cost))
+            alone.append(constant_source(group[0].period, group[0].jitter, group[0].wcet))
     return _Level(own, tuple(mates), tuple(others), tuple(alone), fixed, after, closing)
 
 
@@ -284,7 +286,7 @@ def _of_jobs(
             needed += sum(
                 max(sum(one.demand(window) for one in case) for case in cases) for cases in others
             )
-            needed += sum(cost_of(s, releases_in(window, s[0], s[1])) for s in level.sources)
+            needed += sum(execution_of(s, releases_in(window, s[0], s[1])) for s in level.sources)
             if needed <= length or effort.left <= 0:
                 return length
             length = needed
@@ -292,11 +294,11 @@ def _of_jobs(
     length, busy = 0, 0
     while effort.left > 0:
         before = number - (1 - own.waiting)
-        fixed = level.fixed + (before + 1) * step.cost - level.after
+        fixed = level.fixed + (before + 1) * step.wcet - level.after
         length = settled(fixed, level.closing, length)
         arrival = own.phase + (number - 1) * step.period
         yield length + level.after - arrival + step.offset
-        busy = settled(level.fixed + (before + 1) * step.cost, 0, busy)
+        busy = settled(level.fixed + (before + 1) * step.wcet, 0, busy)
         number += 1
         if number > 0 and busy <= own.phase + (number - 1) * step.period:
             return

@@ -36,9 +36,9 @@ def source(period: int, jitter: int, demand: Demand) -> Source:
     return period, jitter, demand.total, demand.steady
 
 
-def fixed_cost(period: int, jitter: int, cost: int) -> Source:
+def constant_source(period: int, jitter: int, wcet: int) -> Source:
     """Releases every ``period`` with that jitter, all of the same C."""
-    return period, jitter, cost, None
+    return period, jitter, wcet, None
 
 
 def releases_in(length: int, period: int, jitter: int) -> int:
@@ -46,19 +46,19 @@ def releases_in(length: int, period: int, jitter: int) -> int:
     return -(-(length + jitter) // period)
 
 
-def cost_of(item: Source, count: int) -> int:
+def execution_of(item: Source, count: int) -> int:
     """The most that ``count`` releases of a source execute."""
-    _, _, cost, table = item
+    _, _, wcet, table = item
     if table is None:
-        return count * cost
+        return count * wcet
     cycles, rest = divmod(count, len(table))
-    return cycles * cost + table[rest]
+    return cycles * wcet + table[rest]
 
 
 def rate(item: Source) -> int:
     """The share that a source needs in the long run, in 1 / `SCALE`, rounded down."""
-    period, _, cost, table = item
-    return cost * SCALE // (period if table is None else period * len(table))
+    period, _, wcet, table = item
+    return wcet * SCALE // (period if table is None else period * len(table))
 
 
 class Load:
@@ -121,7 +121,7 @@ class Window:
         """Add a source; ``serial``, from 0 up, is its unique number."""
         period, jitter, _, _ = item
         count = releases_in(self.length, period, jitter)
-        taken = cost_of(item, count)
+        taken = execution_of(item, count)
         self.demand += taken
         heappush(self._due, (count * period - jitter, serial, taken, item))
         self._weigh(item, 1)
@@ -129,7 +129,7 @@ class Window:
     def leave_out(self, serial: int, item: Source) -> None:
         """Remove one source; a window allows this once."""
         period, jitter, _, _ = item
-        self.demand -= cost_of(item, releases_in(self.length, period, jitter))
+        self.demand -= execution_of(item, releases_in(self.length, period, jitter))
         self._apart = serial
         self._weigh(item, -1)
 
@@ -152,13 +152,13 @@ class Window:
                 if serial == apart:
                     heappop(due)
                     continue
-                period, jitter, cost, table = item
+                period, jitter, wcet, table = item
                 count = -(-(length + jitter) // period)
                 if table is None:
-                    now = count * cost
+                    now = count * wcet
                 else:
                     cycles, rest = divmod(count, len(table))
-                    now = cycles * cost + table[rest]
+                    now = cycles * wcet + table[rest]
                 demand += now - taken
                 spent += 1
                 heapreplace(due, (count * period - jitter, serial, now, item))

@@ -125,7 +125,7 @@ def _items(network: Network) -> Iterator[_Item]:
         else:
             place = next(bus for bus, some in network.frames.items() if item in some)
             level = urgency(network.frames[place])[name]
-            longest, start = item.cost, 0
+            longest, start = item.transmission_time, 0
         if level > PRIORITIES:
             raise Unfit(f"Cheddar has {PRIORITIES} priorities: {places[place]} needs {level}")
         yield _Item(

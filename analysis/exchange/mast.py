@@ -69,7 +69,7 @@ def export(network: Network, chains: Sequence[TimedChain], title: str) -> str:
 
 
 def _linked_releases(network: Network) -> bool:
-    """A release costs time, and is no event of its own: a tick or another task makes it."""
+    """A release takes time, and is no event of its own: a tick or another task makes it."""
     return any(
         task.core in network.platforms
         and network.platforms[task.core].release > 0
@@ -144,7 +144,7 @@ class _Writer:
             timer = None
             if platform is not None and platform.tick_period:
                 timer = _attributes(
-                    Type="Ticker", Worst_Overhead=platform.tick_cost, Period=platform.tick_period
+                    Type="Ticker", Worst_Overhead=platform.tick_wcet, Period=platform.tick_period
                 )
             yield MastObject(
                 "Processing_Resource",
@@ -165,8 +165,8 @@ class _Writer:
                     Transmission="Half_Duplex",
                     Throughput=1,
                     Max_Blocking=self.network.buses[bus].unknown,
-                    Max_Packet_Size=max(frame.cost for frame in frames),
-                    Min_Packet_Size=min(frame.cost for frame in frames),
+                    Max_Packet_Size=max(frame.transmission_time for frame in frames),
+                    Min_Packet_Size=min(frame.transmission_time for frame in frames),
                 ),
             )
 
@@ -243,11 +243,11 @@ class _Writer:
                     Composite_Operation_List=tuple(parts) or None,
                 ),
             )
-            if cost := self._release(task):
+            if wcet := self._release(task):
                 yield MastObject(
                     "Operation",
                     _attributes(
-                        Type="Simple", Name=f"{name}_release_job", Worst_Case_Execution_Time=cost
+                        Type="Simple", Name=f"{name}_release_job", Worst_Case_Execution_Time=wcet
                     ),
                 )
         for frames in self.network.frames.values():
@@ -257,8 +257,8 @@ class _Writer:
                     _attributes(
                         Type="Message_Transmission",
                         Name=f"{self.item[frame.name]}_job",
-                        Max_Message_Size=frame.cost,
-                        Avg_Message_Size=frame.cost,
+                        Max_Message_Size=frame.transmission_time,
+                        Avg_Message_Size=frame.transmission_time,
                         Min_Message_Size=self.network.least()[frame.name],
                     ),
                 )

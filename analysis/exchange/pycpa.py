@@ -129,7 +129,7 @@ def _lines(network: Network) -> Iterator[str]:
 
 
 def _task(name: str, place: str, item: Task | Frame, level: int, best: int) -> str:
-    longest = item.wcet if isinstance(item, Task) else item.cost
+    longest = item.wcet if isinstance(item, Task) else item.transmission_time
     return (
         f'{name} = {place}.bind_task(model.Task("{name}", wcet={longest}, bcet={best}, '
         f"scheduling_parameter={level}))"

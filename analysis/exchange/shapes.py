@@ -59,7 +59,7 @@ def dense(levels: Iterable[int]) -> dict[int, int]:
 def need_exact_times(network: Network) -> None:
     """Refuse times that a double cannot hold."""
     for name, item in network.items().items():
-        longest = item.plain_wcet if isinstance(item, Task) else item.cost
+        longest = item.plain_wcet if isinstance(item, Task) else item.transmission_time
         largest = max(item.period, item.deadline, item.jitter, longest)
         if largest >= EXACT:
             raise Unfit(f"the times of {name} must be below 2**53 ns, which is 104 days")
@@ -114,7 +114,7 @@ def unqueued(network: Network) -> Network:
         bound = found.responses[frame.name].bound
         if bound is None:
             raise Unfit(f"{frame.name} has no bound in its queue, so there is none to export")
-        return replace(sooner(frame), queue="", jitter=bound - frame.cost)
+        return replace(sooner(frame), queue="", jitter=bound - frame.transmission_time)
 
     def sooner(item: Item) -> Item:
         """Its deadline from where the way to it was cut, which is later by the best case."""
@@ -166,8 +166,8 @@ def background(network: Network) -> Network:
                 raise Unfit(f"no task uses {section.resource}: leave it out")
             name = f"{section.user} on {core}" if core else section.user
             held = tasks.get(name)
-            cost = section.length + (held.wcet if held else 0)
-            tasks[name] = Task(name, lowest, HOUR, HOUR, cost, core=core, sporadic=True)
+            wcet = section.length + (held.wcet if held else 0)
+            tasks[name] = Task(name, lowest, HOUR, HOUR, wcet, core=core, sporadic=True)
             section = replace(section, user=name)
         sections.append(section)
     return replace(network, tasks=(*network.tasks, *tasks.values()), sections=tuple(sections))
@@ -229,8 +229,8 @@ def spelled_out(network: Network) -> Network:
                 released[extra.name] = released[task.name]
     for core in dict.fromkeys(task.core for task in network.tasks):
         platform = network.platforms.get(core, NO_OVERHEAD)
-        if platform.tick_cost:
-            tick = _above_all(network, f"{core}_tick", core, platform.tick_cost)
+        if platform.tick_wcet:
+            tick = _above_all(network, f"{core}_tick", core, platform.tick_wcet)
             tasks.append(replace(tick, period=platform.tick_period, deadline=platform.tick_period))
     try:
         return replace(network, tasks=tuple(tasks), released_by=released, platforms={})
@@ -238,13 +238,13 @@ def spelled_out(network: Network) -> Network:
         raise Unfit(f"overheads become tasks of their own, and {fault}") from None
 
 
-def _above_all(network: Network, name: str, core: str, cost: int) -> Task:
+def _above_all(network: Network, name: str, core: str, wcet: int) -> Task:
     """A task that all others of its core wait for."""
     highest = max(
         [task.priority for task in network.tasks if task.core == core]
         + list(network.ceilings.values())
     )
-    return Task(name, highest + 1, 1, 1, cost, core=core)
+    return Task(name, highest + 1, 1, 1, wcet, core=core)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Findings of an analysis of a model: missed deadlines, claims, advice."""
+"""Findings of an analysis of a model: missed deadlines, claimed bounds, advice."""

@@ -15,12 +15,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ravenchart import rounded
 from ravenchart.analysis.core import changes, holistic
 from ravenchart.analysis.core.changes import Change, ChangeKind, Met, Part
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling, scaled_network
-from ravenchart.analysis.units import percent, spoken
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
+from ravenchart.rounded import Rounding
 
 if TYPE_CHECKING:
     from ravenchart.analysis.system.timing import Analysis
@@ -181,7 +182,7 @@ def lines(found: Advice | None) -> tuple[str, ...]:
         return ()
     aim = "keep all deadlines and limits" if found.limits else "meet all deadlines"
     if found.room:
-        aim = f"let all execution times grow by {percent(ROOM)}"
+        aim = f"let all execution times grow by {rounded.room(ROOM)}"
     enough = [change for change in found.changes if change.enough]
     rest = [change for change in found.changes if not change.enough]
     told = (
@@ -199,8 +200,8 @@ def lines(found: Advice | None) -> tuple[str, ...]:
 def _worth(name: str, factor: Fraction) -> str:
     """The relief without a part, in words."""
     if factor >= 1:
-        return f"without {name}, all else may grow by {float(factor - 1) * 100:.1f} %"
-    return f"without {name}, all else must still shrink by {percent(1 - factor)}"
+        return f"without {name}, all else may grow by {rounded.room(factor - 1)}"
+    return f"without {name}, all else must still shrink by {rounded.percent(1 - factor)}"
 
 
 def figures(found: Advice | None) -> list[dict[str, object]]:
@@ -244,16 +245,16 @@ def _told(change: Change, found: Advice) -> str:
             place = change.order.index(change.name)
             return f"identifier of {change.name} before that of {change.order[place + 1]}"
         return f"{what} of {change.name or 'the core'} in this order: {', '.join(change.order)}"
-    share = percent(change.amount)
+    share = rounded.percent(change.amount)
     if change.kind is ChangeKind.PERIOD:
         period = found.network.items()[change.name].period
         longer = -(-period * change.factor.numerator // change.factor.denominator)
-        after = f"{spoken(period)} to {spoken(longer)}"
-        return f"period of {change.name} longer by {share}: {after}"
+        before, after = rounded.changed(period, longer, Rounding.UP)
+        return f"period of {change.name} longer by {share}: {before} to {after}"
     wcet = _wcet(found, change.name)
     shorter = wcet * change.factor.numerator // change.factor.denominator
-    after = f"{spoken(wcet)} to {spoken(shorter - 99)}"
-    return f"WCET of {change.name} less by {share}: {after}"
+    before, after = rounded.changed(wcet, shorter, Rounding.DOWN)
+    return f"WCET of {change.name} less by {share}: {before} to {after}"
 
 
 def _tasks(found: Advice) -> set[str]:

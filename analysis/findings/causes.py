@@ -25,7 +25,7 @@ def is_full(response: Response | FrameResponse) -> bool:
 
 
 def _is_delayed(response: Response | FrameResponse) -> bool:
-    return response.reason is Reason.RIVAL and not is_full(response)
+    return response.reason is Reason.DELAYED and not is_full(response)
 
 
 @dataclass

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The claims of a system's certificate, with the windows that show them.
+"""The claimed bounds of a system's certificate, with the windows that show them.
 
 A response keeps the window of its worst job. The certificate needs the windows of all jobs
 of the busy period and, for a message, the busy period itself.
@@ -19,7 +19,7 @@ from ravenchart.analysis.core.can_response import ERRORS, FrameResponse
 from ravenchart.analysis.core.chains import HopKind
 from ravenchart.analysis.core.offsets import OffsetSearch, aligned
 from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, release_time
-from ravenchart.analysis.core.window import Effort, Window, fixed_cost, source
+from ravenchart.analysis.core.window import Effort, Window, constant_source, source
 from ravenchart.analysis.system import latencies
 from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.latencies import Latency, reception_frames
@@ -95,7 +95,7 @@ def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
 
 
 def by_offsets(analysis: Analysis) -> dict[str, tuple[Ns, ...]]:
-    """The processors that only their offsets keep from being late, with `Claim.since`."""
+    """The processors that only their offsets keep from being late, with `ResponseClaim.since`."""
     blind = analysis.for_all_offsets
     if blind is analysis:
         return {}
@@ -153,11 +153,11 @@ def _jobs(response: Response) -> list[int]:
         own = source(other.period, jitter_of(other, platform), demand_of(other, platform))
         window.add(number, own)
     number = len(others)
-    if platform.tick_cost:
-        window.add(number, fixed_cost(platform.tick_period, 0, platform.tick_cost))
+    if platform.tick_wcet:
+        window.add(number, constant_source(platform.tick_period, 0, platform.tick_wcet))
     for place, other in enumerate(level.order if platform.release else (), number + 1):
-        cost = release_time(other, platform)
-        release = fixed_cost(other.period, jitter_of(other, platform), cost)
+        wcet = release_time(other, platform)
+        release = constant_source(other.period, jitter_of(other, platform), wcet)
         window.add(place, release)
     demand = demand_of(task, platform)
     found: list[int] = []
@@ -186,24 +186,28 @@ def _of(response: FrameResponse) -> ResponseClaim:
     errors = level.bus.errors
     blocked = level.blocker[1]
     if errors is not None:
-        blocked += (errors.burst - 1) * level.error_cost
+        blocked += (errors.burst - 1) * level.error_overhead
     waiting, busy = Window(), Window()
     busy.length = 1  # zero is a fixed point too
     for number, other in enumerate(level.order[: level.reach]):
         late = level.jitter(other, frame)
-        busy.add(number, fixed_cost(other.period, late, other.cost))
+        busy.add(number, constant_source(other.period, late, other.transmission_time))
         if other.name != frame.name:
-            until = fixed_cost(other.period, late + level.bus.bit_time, other.cost)
+            until = constant_source(
+                other.period, late + level.bus.bit_time, other.transmission_time
+            )
             waiting.add(number, until)
     if errors is not None:
-        waiting.add(ERRORS, fixed_cost(errors.period, frame.cost, level.error_cost))
-        busy.add(ERRORS, fixed_cost(errors.period, 0, level.error_cost))
+        waiting.add(
+            ERRORS, constant_source(errors.period, frame.transmission_time, level.error_overhead)
+        )
+        busy.add(ERRORS, constant_source(errors.period, 0, level.error_overhead))
     effort = Effort(EFFORT)
     (length,) = _settled(busy, [blocked], effort, frame.name)
     instances = -(-(length + frame.jitter) // frame.period)
     if instances > MOST_JOBS:
         raise Unclaimed(f"{frame.name} has {instances} instances in one busy period")
-    fixed = [blocked + instance * frame.cost for instance in range(instances)]
+    fixed = [blocked + instance * frame.transmission_time for instance in range(instances)]
     windows = _settled(waiting, fixed, effort, frame.name)
     return ResponseClaim(Ns(response.bound), tuple(map(Ns, windows)), Ns(length))
 
@@ -217,9 +221,9 @@ def _capped(analysis: Analysis) -> tuple[dict[str, Ns], dict[str, Ns]]:
             frame, bound = response.frame, response.bound or 0
             for other in analysis.frames(bus):
                 wait = other.level.delays.get(frame.name)
-                if wait is not None and wait < bound - frame.cost - frame.jitter:
+                if wait is not None and wait < bound - frame.transmission_time - frame.jitter:
                     waits[frame.name] = Ns(wait)
-                    busiest[bus.name] = Ns(wait + frame.cost)
+                    busiest[bus.name] = Ns(wait + frame.transmission_time)
     return waits, busiest
 
 
@@ -231,9 +235,9 @@ def _turns(analysis: Analysis, handed: set[str]) -> dict[str, ResponseClaim]:
         waiting = reception_frames(processor, system, analysis.found)
         for response in can.analyse(waiting, Bus(bit_time=1)):
             if response.frame.name in handed:
-                claim = _of(response)
-                turn = Ns(claim.response - processor.period)
-                found[response.frame.name] = ResponseClaim(turn, claim.windows, claim.busy)
+                claimed = _of(response)
+                turn = Ns(claimed.response - processor.period)
+                found[response.frame.name] = ResponseClaim(turn, claimed.windows, claimed.busy)
     return found
 
 

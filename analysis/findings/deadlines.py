@@ -9,12 +9,13 @@ from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 
+from ravenchart import rounded
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import HopLatency
 from ravenchart.analysis.core.responses import Interference, Reason, Response
 from ravenchart.analysis.system.latencies import HopKind, Latency
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import duration, percent, spoken
+from ravenchart.analysis.units import duration
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
@@ -84,8 +85,9 @@ def _of_transfers(analysis: Analysis) -> Iterator[Diagnostic]:
         if one.in_time or one.round_trip is None or one.segment is None:
             continue  # what has no bound has its own error
         needed = Ns(one.round_trip + one.segment)
-        message = f"the time-out of {one.message.name} is {duration(one.transport.timeout)}; with "
-        message += f"flow control its next segment may take {duration(needed)}"
+        takes, timeout = rounded.against(needed, one.transport.timeout)
+        message = f"the time-out of {one.message.name} is {timeout}; with "
+        message += f"flow control its next segment may take {takes}"
         hint = f"give `transport` a `timeout` of {duration(needed)} or more"
         yield error(GIVEN_UP, one.message.origin, message, hint=hint)
 
@@ -95,7 +97,7 @@ def no_bound_reason(response: Response | FrameResponse) -> str:
     reason = response.reason or Reason.EFFORT
     if not is_full(response):
         return str(reason.value)
-    load = percent(response.level.load)
+    load = rounded.percent(response.level.load)
     if isinstance(response, Response):
         return f"it and the tasks that preempt it need {load} of the core, more than all of it"
     return f"it and the messages sent before it need {load} of the bus, more than all of it"
@@ -112,11 +114,11 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
             notes=_task_notes(response, analysis),
             hint="shorten worst-case execution times, or lengthen periods",
         )
+    bound, deadline = rounded.against(response.bound, task.deadline)
     return error(
         MISSED,
         task.origin,
-        f"{task.element} misses its deadline: "
-        f"R = {spoken(response.bound)} > D = {spoken(task.deadline)}",
+        f"{task.element} misses its deadline: R = {bound} > D = {deadline}",
         notes=_task_notes(response, analysis),
         hint="lengthen the period of the message, or shorten what preempts the driver"
         if task.driver_of
@@ -128,9 +130,9 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     """Its own time, the largest interferers and the blocker, each where it is declared."""
     tasks, blocking = analysis.tasks, response.blocking
     task = tasks[response.task.name]
-    notes = [(task.origin, f"{task.element} itself runs for up to {spoken(task.wcet)}")]
+    notes = [(task.origin, f"{task.element} itself runs for up to {rounded.up(task.wcet)}")]
     if response.jitter:
-        late = f"the release of {task.element} is late by up to {spoken(response.jitter)}"
+        late = f"the release of {task.element} is late by up to {rounded.up(response.jitter)}"
         notes.append((task.origin, late))
     if response.bound is None:
         others = response.level.order[: response.level.reach]
@@ -139,8 +141,8 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes += [
             (
                 tasks[other.name].origin,
-                f"{other.name}, period {spoken(other.period)}, preempts {task.element}: "
-                f"{percent(other.utilisation)} of the core",
+                f"{other.name}, period {rounded.down(other.period)}, preempts {task.element}: "
+                f"{rounded.percent(other.utilisation)} of the core",
             )
             for other in load[:LARGEST]
         ]
@@ -148,8 +150,8 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 tasks[share.task.name].origin,
-                f"{share.task.name}, period {spoken(share.task.period)}, preempts {task.element}: "
-                f"{taken(share)}",
+                f"{share.task.name}, period {rounded.down(share.task.period)}, "
+                f"preempts {task.element}: {taken(share)}",
             )
         )
     if blocking is not None:
@@ -157,7 +159,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
         notes.append(
             (
                 origin,
-                f"{blocking.user} may block {task.element} for {spoken(blocking.length)} "
+                f"{blocking.user} may block {task.element} for {rounded.up(blocking.length)} "
                 f"inside {blocking.resource}",
             )
         )
@@ -166,24 +168,25 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
 
 def taken(share: Interference) -> str:
     """The sum that the time of an interferer is made of."""
-    cost = share.task.plain_wcet
-    if share.time == share.releases * cost:
-        return f"{share.releases} x {spoken(cost)} = {spoken(share.time)}"
-    return f"{share.releases} releases, not all with every row, take {spoken(share.time)}"
+    wcet, time = share.task.plain_wcet, rounded.up(share.time)
+    if share.time == share.releases * wcet:
+        return f"{share.releases} x {rounded.up(wcet)} = {time}"
+    return f"{share.releases} releases, not all with every row, take {time}"
 
 
 def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
     """The error of one message."""
     message = analysis.messages[response.frame.name]
-    notes = [(message.origin, f"the frame of {message.name} takes {spoken(response.frame.cost)}")]
+    takes = rounded.up(response.frame.transmission_time)
+    notes = [(message.origin, f"the frame of {message.name} takes {takes}")]
     if response.frame.jitter:
-        late = f"the controller gets {message.name} up to {spoken(response.frame.jitter)} late"
+        late = f"the controller gets {message.name} up to {rounded.up(response.frame.jitter)} late"
         notes.append((message.origin, late))
     notes += [
         (
             analysis.messages[share.frame.name].origin,
             f"{share.frame.name} goes before {message.name}: {share.instances} x "
-            f"{spoken(share.frame.cost)} = {spoken(share.time)}",
+            f"{rounded.up(share.frame.transmission_time)} = {rounded.up(share.time)}",
         )
         for share in response.interference[:LARGEST]
     ]
@@ -195,11 +198,11 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
             notes=notes,
             hint="lengthen periods, or raise the bit rate",
         )
+    bound, deadline = rounded.against(response.bound, message.limit)
     return error(
         MISSED,
         message.origin,
-        f"message {message.name} misses its deadline: "
-        f"R = {spoken(response.bound)} > D = {spoken(message.limit)}",
+        f"message {message.name} misses its deadline: R = {bound} > D = {deadline}",
         notes=notes,
         hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
     )
@@ -214,14 +217,14 @@ def _of_bus(bus: Bus, analysis: Analysis) -> Diagnostic:
         notes.append(
             (
                 message.origin,
-                f"{message.name} takes {percent(frame.utilisation)}: "
-                f"{spoken(frame.cost)} every {spoken(frame.period)}",
+                f"{message.name} takes {rounded.percent(frame.utilisation)}: "
+                f"{rounded.up(frame.transmission_time)} every {rounded.down(frame.period)}",
             )
         )
     return error(
         BUS_OVERLOAD,
         bus.origin,
-        f"{bus.name} may be loaded to {percent(analysis.bus_load(bus))}",
+        f"{bus.name} may be loaded to {rounded.percent(analysis.bus_load(bus))}",
         notes=notes,
         hint="lengthen periods, or raise the bit rate",
     )
@@ -240,10 +243,10 @@ def _of_receptions(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:
             yield error(
                 NO_BOUND,
                 processor.origin,
-                f"{processor.name} takes a frame every {duration(processor.period)}, but "
-                f"its messages need {percent(load)} of that rate: {lost}",
+                f"{processor.name} takes a frame every {rounded.up(processor.period)}, but "
+                f"its messages need {rounded.percent(load)} of that rate: {lost}",
                 notes=[
-                    (m.origin, f"{m.name} comes every {duration(m.period)}") for m in taken_here
+                    (m.origin, f"{m.name} comes every {rounded.down(m.period)}") for m in taken_here
                 ],
                 hint="shorten the period of the processor",
             )
@@ -308,13 +311,19 @@ def _late_chain(
     """The error of a limit that is not met, with the slowest hops."""
     hops = [(hop.step.name, (hop.wait or 0) + (hop.response or 0)) for hop in found.hops]
     hops.sort(key=lambda hop: -hop[1])
-    takes = "has no bound" if value is None else f"may take {spoken(value)}"
+    takes, shown = "has no bound", rounded.down(limit)
+    if value is not None:
+        longest, shown = rounded.against(value, limit)
+        takes = f"may take {longest}"
     return error(
         CHAIN_LATE,
         chain.origin,
-        f"the {what} of {chain.name} {takes}; its limit is {spoken(limit)}",
+        f"the {what} of {chain.name} {takes}; its limit is {shown}",
         notes=[(chain.origin, reason) for reason in _unbounded(found, what)]
-        or [(chain.origin, f"{name} takes up to {spoken(time)}") for name, time in hops[:LARGEST]],
+        or [
+            (chain.origin, f"{name} takes up to {rounded.up(time)}")
+            for name, time in hops[:LARGEST]
+        ],
         hint=_chain_hint(chain, found, what, value),
     )
 

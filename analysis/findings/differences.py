@@ -4,7 +4,8 @@
 """Differences between two versions of a system, each for the better or the worse.
 
 Both versions are objects that `analyse --json` prints. So a stored answer, a model and a plain
-file can all be compared. Times are whole ns.
+file can all be compared. Times are whole ns. `--json` has the exact times of a difference, and its
+line has rounded ones.
 """
 
 from __future__ import annotations
@@ -13,9 +14,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
-from ravenchart.analysis.units import percent, spoken
+from ravenchart import rounded
+from ravenchart.analysis.units import exact_time
+from ravenchart.rounded import Rounding
 
 Figures = Mapping[str, Any]
 """An object of `analyse --json`."""
@@ -41,6 +45,8 @@ class Difference:
     now: str
     change: str
     word: Wording
+    rounded: tuple[str, str] = ("", "")
+    """``before`` and ``now`` of the line."""
 
     @property
     def line(self) -> str:
@@ -48,7 +54,8 @@ class Difference:
         if self.word in (Wording.ADDED, Wording.REMOVED):
             return f"{self.element}: {self.word.value}"
         by = f" ({self.change})" if self.change else ""
-        return f"{self.element}: {self.figure} {self.before} -> {self.now}{by}, {self.word.value}"
+        before, now = self.rounded
+        return f"{self.element}: {self.figure} {before} -> {now}{by}, {self.word.value}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +69,8 @@ class Differences:
     def figures(self) -> dict[str, object]:
         """The same for `--json`."""
         rows = [asdict(row) | {"word": row.word.value} for row in self.rows]
+        for row in rows:
+            del row["rounded"]
         return {"earlier": self.earlier, "verdict": self.verdict, "changed": rows}
 
     def lines(self) -> Iterator[str]:
@@ -72,35 +81,55 @@ class Differences:
 
 @dataclass(frozen=True, slots=True)
 class _Figure:
-    """A figure to compare: ``larger`` is the word for an increase; None is the largest time."""
+    """A figure to compare: ``larger`` is the word for an increase; None is the largest time.
+
+    ``shown`` gives the text of a value, ``both`` the rounded texts of two values.
+    """
 
     name: str
     key: str
     larger: Wording
     shown: Callable[[Any], str]
+    both: Callable[[Any, Any], tuple[str, str]]
     none: str = "none"
 
+    def texts(self, *values: object) -> list[str]:
+        """The texts of values that may be missing."""
+        return [self.none if value is None else self.shown(value) for value in values]
 
-def _plainly(value: object) -> str:
-    return str(value)
+
+def _of_name(name: str, key: str, shown: Callable[[Any], str] = str) -> _Figure:
+    """A figure that is no quantity."""
+    return _Figure(name, key, Wording.CHANGED, shown, lambda old, new: (shown(old), shown(new)))
+
+
+def _needed(name: str, key: str, larger: Wording = Wording.CHANGED, none: str = "none") -> _Figure:
+    """A time that work needs."""
+    return _Figure(name, key, larger, exact_time, partial(rounded.changed, side=Rounding.UP), none)
+
+
+def _allowed(name: str, key: str) -> _Figure:
+    """A time that is allowed."""
+    both = partial(rounded.changed, side=Rounding.DOWN)
+    return _Figure(name, key, Wording.CHANGED, exact_time, both)
 
 
 def _times(longest: str) -> tuple[_Figure, ...]:
     """The times of a task or message, whose C is the figure ``longest``."""
     return (
-        _Figure("T", "period", Wording.CHANGED, spoken),
-        _Figure("D", "deadline", Wording.CHANGED, spoken),
-        _Figure("C", longest, Wording.CHANGED, spoken),
-        _Figure("J", "jitter", Wording.CHANGED, spoken),
-        _Figure("B", "blocked", Wording.CHANGED, spoken),
-        _Figure("R", "response", Wording.WORSE, spoken, "no bound"),
+        _allowed("T", "period"),
+        _allowed("D", "deadline"),
+        _needed("C", longest),
+        _needed("J", "jitter"),
+        _needed("B", "blocked"),
+        _needed("R", "response", Wording.WORSE, "no bound"),
     )
 
 
-_PRIORITY = _Figure("priority", "priority", Wording.CHANGED, _plainly)
-_RANK = _Figure("order in arbitration", "rank", Wording.CHANGED, hex)
-_CORE = _Figure("core", "core", Wording.CHANGED, _plainly)
-_BUS = _Figure("bus", "bus", Wording.CHANGED, _plainly)
+_PRIORITY = _of_name("priority", "priority")
+_RANK = _of_name("order in arbitration", "rank", hex)
+_CORE = _of_name("core", "core")
+_BUS = _of_name("bus", "bus")
 
 _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
     ("tasks", "task", (_CORE, _PRIORITY, *_times("wcet"))),
@@ -109,21 +138,22 @@ _ELEMENTS: tuple[tuple[str, str, Sequence[_Figure]], ...] = (
         "chains",
         "chain",
         (
-            _Figure("reaction limit", "reaction_limit", Wording.CHANGED, spoken),
-            _Figure("reaction", "reaction", Wording.WORSE, spoken, "no bound"),
-            _Figure("age limit", "age_limit", Wording.CHANGED, spoken),
-            _Figure("age", "age", Wording.WORSE, spoken, "no bound"),
+            _allowed("reaction limit", "reaction_limit"),
+            _needed("reaction", "reaction", Wording.WORSE, "no bound"),
+            _allowed("age limit", "age_limit"),
+            _needed("age", "age", Wording.WORSE, "no bound"),
         ),
     ),
 )
 """The lists of the object, the name of their entries, and the figures of an entry."""
 
-_LOAD = _Figure("load", "load", Wording.WORSE, percent)
+_LOAD = _Figure("load", "load", Wording.WORSE, rounded.percent, rounded.changed_shares)
 _SCALING = _Figure(
     "factor of all execution times",
     "scaling",
     Wording.BETTER,
-    lambda factor: f"{float(factor):.3f}",
+    rounded.factor,
+    rounded.changed_factors,
 )
 
 
@@ -183,12 +213,23 @@ def _of_element(
     for figure in figures:
         old, new = before[figure.key], now[figure.key]
         if old != new:
-            shown = [figure.none if one is None else figure.shown(one) for one in (old, new)]
+            shown = figure.texts(old, new)
             more = figure.larger if _more(figure, old, new) else _opposite(figure.larger)
-            yield Difference(element, figure.name, shown[0], shown[1], _change(old, new), more)
+            change, both = _change(old, new), _both(figure, old, new)
+            yield Difference(element, figure.name, shown[0], shown[1], change, more, both)
     if "met" in before and before["met"] != now["met"]:
         word = Wording.BETTER if now["met"] else Wording.WORSE
-        yield Difference(element, "verdict", _met(before["met"]), _met(now["met"]), "", word)
+        words = _met(before["met"]), _met(now["met"])
+        yield Difference(element, "verdict", *words, "", word, words)
+
+
+def _both(figure: _Figure, old: Any, new: Any) -> tuple[str, str]:
+    """The texts of two values for a line; of one value alone where the other is missing."""
+    if old is not None and new is not None:
+        return figure.both(old, new)
+    alone = old if new is None else new
+    text = figure.both(alone, alone)[0]
+    return (text, figure.none) if new is None else (figure.none, text)
 
 
 def _more(figure: _Figure, old: Any, new: Any) -> bool:
@@ -205,7 +246,7 @@ def _opposite(word: Wording) -> Wording:
 def _change(old: object, new: object) -> str:
     """The difference in per cent of the old value; "" where there is no number."""
     if isinstance(old, int | Fraction) and isinstance(new, int | Fraction) and old:
-        return f"{float((new - old) / Fraction(old)) * 100:+.1f} %"
+        return rounded.signed_percent((new - old) / Fraction(old))
     return ""
 
 

@@ -4,52 +4,53 @@
 package body Busy_Periods
   with SPARK_Mode
 is
-   function Is_Counted (Period, Cost, Taken, Due : Ticks) return Boolean
+   function Is_Counted (Period, Wcet, Taken, Due : Ticks) return Boolean
    is (Due <= 2 * Limit
        and then Taken <= Due
        and then Due = Due / Period * Period
-       and then Taken = Due / Period * Cost)
+       and then Taken = Due / Period * Wcet)
    with
      Ghost,
-     Pre => Period in 1 .. Limit - 1 and then Cost in 1 .. Period;
-   --  Taken is what the releases before Due execute, and Due is one.
+     Pre => Period in 1 .. Limit - 1 and then Wcet in 1 .. Period;
+   --  Taken is the execution of the releases before Due, and Due is one of the
+   --  releases.
 
    function Are_Counted
-     (Period, Cost, Taken, Due : Times;
+     (Period, Wcet, Taken, Due : Times;
       Level                    : Task_Count) return Boolean
    is (for all J in 1 .. Level =>
-         Is_Counted (Period (J), Cost (J), Taken (J), Due (J)))
-   with Ghost, Pre => Are_Plain (Level, Period, Cost);
-   --  That of every task up to Level.
+         Is_Counted (Period (J), Wcet (J), Taken (J), Due (J)))
+   with Ghost, Pre => Are_Plain (Level, Period, Wcet);
+   --  Is_Counted for every task up to Level.
 
    procedure Count_Releases
-     (Period, Cost : Ticks;
+     (Period, Wcet : Ticks;
       Window       : Ticks;
       Taken, Due   : out Ticks)
    with
      Pre  =>
        Window in 1 .. Limit
        and then Period in 1 .. Limit - 1
-       and then Cost in 1 .. Period,
+       and then Wcet in 1 .. Period,
      Post =>
-       Due >= Window and then Is_Counted (Period, Cost, Taken, Due);
+       Due >= Window and then Is_Counted (Period, Wcet, Taken, Due);
    --  Count those within Window.
 
    procedure Take_One
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       J            : Task_Number;
       Window       : Ticks;
       Taken, Due   : in out Times)
    with
      Pre  =>
-       Are_Plain (J, Period, Cost)
+       Are_Plain (J, Period, Wcet)
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, J - 1),
-     Post => Are_Counted (Period, Cost, Taken, Due, J);
+       and then Are_Counted (Period, Wcet, Taken, Due, J - 1),
+     Post => Are_Counted (Period, Wcet, Taken, Due, J);
    --  Count the releases of task J besides those of the tasks before it.
 
    procedure Take_In
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Before       : Task_Count;
       Level        : Task_Number;
       Window       : Ticks;
@@ -57,30 +58,30 @@ is
    with
      Pre  =>
        Before < Level
-       and then Are_Plain (Level, Period, Cost)
+       and then Are_Plain (Level, Period, Wcet)
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, Before),
-     Post => Are_Counted (Period, Cost, Taken, Due, Level);
+       and then Are_Counted (Period, Wcet, Taken, Due, Before),
+     Post => Are_Counted (Period, Wcet, Taken, Due, Level);
    --  Count also the releases of the tasks behind Before, up to Level.
 
    procedure Renew
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level, J     : Task_Number;
       Window       : Ticks;
       Taken, Due   : in out Times)
    with
      Pre  =>
        J <= Level
-       and then Are_Plain (Level, Period, Cost)
+       and then Are_Plain (Level, Period, Wcet)
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, Level),
+       and then Are_Counted (Period, Wcet, Taken, Due, Level),
      Post =>
        Due (J) >= Window
-       and then Are_Counted (Period, Cost, Taken, Due, Level);
+       and then Are_Counted (Period, Wcet, Taken, Due, Level);
    --  Count the releases of task J anew.
 
    procedure Pass
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Window       : Ticks;
@@ -88,18 +89,18 @@ is
       Sum          : out Ticks)
    with
      Pre  =>
-       Are_Plain (Level, Period, Cost)
+       Are_Plain (Level, Period, Wcet)
        and then Blocked < Limit
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, Level),
+       and then Are_Counted (Period, Wcet, Taken, Due, Level),
      Post =>
-       Are_Counted (Period, Cost, Taken, Due, Level)
-       and then Sum in Blocked + Demand (Period, Cost, Level, Window)
+       Are_Counted (Period, Wcet, Taken, Due, Level)
+       and then Sum in Blocked + Demand (Period, Wcet, Level, Window)
                   .. Blocked + Ticks (Level) * (2 * Limit);
-   --  What is executed of all that is released within Window.
+   --  The execution of all releases within Window.
 
    procedure Settle
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Longest      : Ticks;
@@ -108,23 +109,23 @@ is
       Done         : out Boolean)
    with
      Pre  =>
-       Are_Plain (Level, Period, Cost)
+       Are_Plain (Level, Period, Wcet)
        and then Blocked < Limit
        and then Longest in 1 .. Limit
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, Level),
+       and then Are_Counted (Period, Wcet, Taken, Due, Level),
      Post =>
-       Are_Counted (Period, Cost, Taken, Due, Level)
+       Are_Counted (Period, Wcet, Taken, Due, Level)
        and then
          (if Done then
             Window in 1 .. Longest
-            and then Blocked + Demand (Period, Cost, Level, Window)
+            and then Blocked + Demand (Period, Wcet, Level, Window)
                      <= Window);
    --  Let Window grow until all that is released in it is executed; not Done
    --  when it would be longer than Longest.
 
    procedure Settle_Blocked
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Longest      : Ticks;
@@ -133,47 +134,48 @@ is
       Found        : out Ticks)
    with
      Pre  =>
-       Are_Plain (Level, Period, Cost)
+       Are_Plain (Level, Period, Wcet)
        and then Blocked < Limit
        and then Longest in 1 .. Limit
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Cost, Taken, Due, Level),
+       and then Are_Counted (Period, Wcet, Taken, Due, Level),
      Post =>
        Found = 0
        or else
          (Found in 1 .. Longest
-          and then Blocked + Demand (Period, Cost, Level, Found) <= Found);
+          and then Blocked + Demand (Period, Wcet, Level, Found) <= Found);
    --  The same for one task that is blocked besides, and 0 for not Done.
 
    procedure Prove_Taken
-     (Period, Cost, Taken, Due : Ticks;
+     (Period, Wcet, Taken, Due : Ticks;
       Window                   : Ticks)
    with
      Ghost,
      Pre  =>
        Window in 1 .. Limit
        and then Period in 1 .. Limit - 1
-       and then Cost in 1 .. Period
-       and then Is_Counted (Period, Cost, Taken, Due)
+       and then Wcet in 1 .. Period
+       and then Is_Counted (Period, Wcet, Taken, Due)
        and then Due >= Window,
-     Post => Taken >= ((Window - 1) / Period + 1) * Cost;
-   --  Up to the next release nothing is added.
+     Post => Taken >= ((Window - 1) / Period + 1) * Wcet;
+   --  Every release within Window lies before Due, so Taken holds its
+   --  execution.
 
    procedure Prove_Next
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Taken, Due   : Times;
       K            : Task_Number)
    with
      Ghost,
      Pre  =>
-       Are_Plain (K, Period, Cost)
-       and then Are_Counted (Period, Cost, Taken, Due, K - 1)
-       and then Is_Counted (Period (K), Cost (K), Taken (K), Due (K)),
-     Post => Are_Counted (Period, Cost, Taken, Due, K);
-   --  One task more.
+       Are_Plain (K, Period, Wcet)
+       and then Are_Counted (Period, Wcet, Taken, Due, K - 1)
+       and then Is_Counted (Period (K), Wcet (K), Taken (K), Due (K)),
+     Post => Are_Counted (Period, Wcet, Taken, Due, K);
+   --  One more task.
 
    procedure Prove_Replaced
-     (Period, Cost             : Times;
+     (Period, Wcet             : Times;
       Taken_Before, Due_Before : Times;
       Taken, Due               : Times;
       Level, J                 : Task_Number)
@@ -181,33 +183,33 @@ is
      Ghost,
      Pre  =>
        J <= Level
-       and then Are_Plain (Level, Period, Cost)
+       and then Are_Plain (Level, Period, Wcet)
        and then
          (for all K in 1 .. Level =>
             (if K /= J then
                Is_Counted
-                 (Period (K), Cost (K), Taken_Before (K), Due_Before (K))))
+                 (Period (K), Wcet (K), Taken_Before (K), Due_Before (K))))
        and then
          (for all K in 1 .. Level =>
             (if K /= J then Taken (K) = Taken_Before (K)))
        and then
          (for all K in 1 .. Level => (if K /= J then Due (K) = Due_Before (K)))
-       and then Is_Counted (Period (J), Cost (J), Taken (J), Due (J)),
-     Post => Are_Counted (Period, Cost, Taken, Due, Level);
-   --  What was counted of the other tasks still is.
+       and then Is_Counted (Period (J), Wcet (J), Taken (J), Due (J)),
+     Post => Are_Counted (Period, Wcet, Taken, Due, Level);
+   --  The counts of the other tasks still hold.
 
    -----------------
    -- Prove_Taken --
    -----------------
 
    procedure Prove_Taken
-     (Period, Cost, Taken, Due : Ticks;
+     (Period, Wcet, Taken, Due : Ticks;
       Window                   : Ticks) is
    begin
       pragma Assert ((Window - 1) / Period + 1 <= Due / Period);
       pragma Assert
-        (((Window - 1) / Period + 1) * Cost <= Due / Period * Cost);
-      pragma Assert (Taken = Due / Period * Cost);
+        (((Window - 1) / Period + 1) * Wcet <= Due / Period * Wcet);
+      pragma Assert (Taken = Due / Period * Wcet);
    end Prove_Taken;
 
    ----------------
@@ -215,7 +217,7 @@ is
    ----------------
 
    procedure Prove_Next
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Taken, Due   : Times;
       K            : Task_Number)
    is null;
@@ -225,7 +227,7 @@ is
    --------------------
 
    procedure Prove_Replaced
-     (Period, Cost             : Times;
+     (Period, Wcet             : Times;
       Taken_Before, Due_Before : Times;
       Taken, Due               : Times;
       Level, J                 : Task_Number) is
@@ -235,11 +237,11 @@ is
            (K = J
             or else
               Is_Counted
-                (Period (K), Cost (K), Taken_Before (K), Due_Before (K)));
+                (Period (K), Wcet (K), Taken_Before (K), Due_Before (K)));
          pragma Assert
-           (Is_Counted (Period (K), Cost (K), Taken (K), Due (K)));
-         Prove_Next (Period, Cost, Taken, Due, K);
-         pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, K));
+           (Is_Counted (Period (K), Wcet (K), Taken (K), Due (K)));
+         Prove_Next (Period, Wcet, Taken, Due, K);
+         pragma Loop_Invariant (Are_Counted (Period, Wcet, Taken, Due, K));
       end loop;
    end Prove_Replaced;
 
@@ -248,7 +250,7 @@ is
    --------------------
 
    procedure Count_Releases
-     (Period, Cost : Ticks;
+     (Period, Wcet : Ticks;
       Window       : Ticks;
       Taken, Due   : out Ticks)
    is
@@ -256,7 +258,7 @@ is
    begin
       pragma Assert ((Releases - 1) * Period <= Window - 1);
       Due   := Releases * Period;
-      Taken := Releases * Cost;
+      Taken := Releases * Wcet;
       pragma Assert (Due / Period = Releases);
    end Count_Releases;
 
@@ -265,7 +267,7 @@ is
    --------------
 
    procedure Take_One
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       J            : Task_Number;
       Window       : Ticks;
       Taken, Due   : in out Times)
@@ -273,9 +275,9 @@ is
       Taken_Before : constant Times := Taken with Ghost;
       Due_Before   : constant Times := Due with Ghost;
    begin
-      Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
+      Count_Releases (Period (J), Wcet (J), Window, Taken (J), Due (J));
       Prove_Replaced
-        (Period, Cost, Taken_Before, Due_Before, Taken, Due, J, J);
+        (Period, Wcet, Taken_Before, Due_Before, Taken, Due, J, J);
    end Take_One;
 
    -------------
@@ -283,7 +285,7 @@ is
    -------------
 
    procedure Take_In
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Before       : Task_Count;
       Level        : Task_Number;
       Window       : Ticks;
@@ -291,8 +293,8 @@ is
    is
    begin
       for J in Before + 1 .. Level loop
-         Take_One (Period, Cost, J, Window, Taken, Due);
-         pragma Loop_Invariant (Are_Counted (Period, Cost, Taken, Due, J));
+         Take_One (Period, Wcet, J, Window, Taken, Due);
+         pragma Loop_Invariant (Are_Counted (Period, Wcet, Taken, Due, J));
       end loop;
    end Take_In;
 
@@ -301,7 +303,7 @@ is
    -----------
 
    procedure Renew
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level, J     : Task_Number;
       Window       : Ticks;
       Taken, Due   : in out Times)
@@ -309,9 +311,9 @@ is
       Taken_Before : constant Times := Taken with Ghost;
       Due_Before   : constant Times := Due with Ghost;
    begin
-      Count_Releases (Period (J), Cost (J), Window, Taken (J), Due (J));
+      Count_Releases (Period (J), Wcet (J), Window, Taken (J), Due (J));
       Prove_Replaced
-        (Period, Cost, Taken_Before, Due_Before, Taken, Due, Level, J);
+        (Period, Wcet, Taken_Before, Due_Before, Taken, Due, Level, J);
    end Renew;
 
    ----------
@@ -319,7 +321,7 @@ is
    ----------
 
    procedure Pass
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Window       : Ticks;
@@ -329,14 +331,14 @@ is
       Sum := Blocked;
       for J in 1 .. Level loop
          if Due (J) < Window then
-            Renew (Period, Cost, Level, J, Window, Taken, Due);
+            Renew (Period, Wcet, Level, J, Window, Taken, Due);
          end if;
-         Prove_Taken (Period (J), Cost (J), Taken (J), Due (J), Window);
+         Prove_Taken (Period (J), Wcet (J), Taken (J), Due (J), Window);
          Sum := Sum + Taken (J);
          pragma Loop_Invariant
-           (Are_Counted (Period, Cost, Taken, Due, Level));
+           (Are_Counted (Period, Wcet, Taken, Due, Level));
          pragma Loop_Invariant
-           (Sum in Blocked + Demand (Period, Cost, J, Window)
+           (Sum in Blocked + Demand (Period, Wcet, J, Window)
               .. Blocked + Ticks (J) * (2 * Limit));
       end loop;
    end Pass;
@@ -346,7 +348,7 @@ is
    ------------
 
    procedure Settle
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Longest      : Ticks;
@@ -358,7 +360,7 @@ is
    begin
       Done := False;
       for Round in 1 .. Most_Rounds loop
-         Pass (Period, Cost, Level, Blocked, Window, Taken, Due, Sum);
+         Pass (Period, Wcet, Level, Blocked, Window, Taken, Due, Sum);
          if Sum <= Window then
             Done := Window <= Longest;
             return;
@@ -367,7 +369,7 @@ is
          Window := Sum;
          pragma Loop_Invariant (Window in 1 .. Limit);
          pragma Loop_Invariant
-           (Are_Counted (Period, Cost, Taken, Due, Level));
+           (Are_Counted (Period, Wcet, Taken, Due, Level));
       end loop;
    end Settle;
 
@@ -376,7 +378,7 @@ is
    --------------------
 
    procedure Settle_Blocked
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Number;
       Blocked      : Ticks;
       Longest      : Ticks;
@@ -393,7 +395,7 @@ is
         (GNATprove, Off, """Own_*"" is set by*",
          Reason => "the window of other levels goes on without blocking");
       Settle
-        (Period, Cost, Level, Blocked, Longest, Own_Taken, Own_Due, Found,
+        (Period, Wcet, Level, Blocked, Longest, Own_Taken, Own_Due, Found,
          Is_Short);
       pragma Warnings (GNATprove, On, """Own_*"" is set by*");
       if not Is_Short then
@@ -407,7 +409,7 @@ is
 
    procedure Find
      (Count        : Task_Count;
-      Period, Cost : Times;
+      Period, Wcet : Times;
       Last         : Levels;
       Blocked      : Times;
       Found        : in out Times)
@@ -426,10 +428,10 @@ is
       for J in 1 .. Count loop
          if Is_Settled and then Level < Last (J) then
             Take_In
-              (Period, Cost, Level, Last (J), Window, Taken, Due);
+              (Period, Wcet, Level, Last (J), Window, Taken, Due);
             Level := Last (J);
             Settle
-              (Period, Cost, Level, 0, Longest, Taken, Due, Window,
+              (Period, Wcet, Level, 0, Longest, Taken, Due, Window,
                Is_Settled);
          end if;
          Found (J) := 0;
@@ -440,7 +442,7 @@ is
                end if;
             else
                Settle_Blocked
-                 (Period, Cost, Level, Blocked (J), Period (J),
+                 (Period, Wcet, Level, Blocked (J), Period (J),
                   Taken, Due, Window, Found (J));
             end if;
          end if;
@@ -450,15 +452,15 @@ is
          pragma Loop_Invariant
            (if Is_Settled then
               Window in 1 .. Limit
-              and then Are_Counted (Period, Cost, Taken, Due, Level)
-              and then Demand (Period, Cost, Level, Window) <= Window);
+              and then Are_Counted (Period, Wcet, Taken, Due, Level)
+              and then Demand (Period, Wcet, Level, Window) <= Window);
          pragma Loop_Invariant
            (for all K in 1 .. J =>
               Found (K) = 0
               or else
                 (Found (K) in 1 .. Period (K)
                  and then Blocked (K)
-                          + Demand (Period, Cost, Last (K), Found (K))
+                          + Demand (Period, Wcet, Last (K), Found (K))
                           <= Found (K)));
       end loop;
    end Find;

@@ -1,18 +1,18 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Busy periods of plain tasks under fixed priorities: what makes the
---  analysis of large sets fast. Plain: one cost, no jitter.
+--  Busy periods of plain tasks under fixed priorities, compiled for the
+--  analysis of large sets. Plain: one WCET, no jitter.
 --
---  Guarantees   a busy period that is found is long enough for all that is
---               released in it at its level; tests show that it is the
---               least. Every operation is total, none overflows
+--  Guarantees   a busy period that is found is long enough for all releases in
+--               it at its level; tests show that it is the least. Every
+--               operation is total, none overflows
 --  Tasking      none: a value from values
 --  Timing       at most Most_Rounds passes over the tasks of each level
 --
 --  Joseph and Pandya, Finding response times in a real-time system (The
---  Computer Journal 29, 1986). A task's releases are counted anew only when
---  the window passes the next of them, and the window of a level goes on
+--  Computer Journal 29, 1986). The releases of a task are counted again only
+--  when the window passes the next of them. The window of a level continues
 --  from that of the level before (Sjodin and Hansson, RTSS 1998).
 
 with Interfaces.C;
@@ -25,10 +25,10 @@ is
    Most_Tasks : constant := 2**13;
 
    Limit : constant := 2**47;
-   --  Times from here on are refused.
+   --  Times from here on are rejected.
 
    Most_Rounds : constant := 200;
-   --  A window that still grows then is given up.
+   --  A window that still grows after so many rounds is given up.
 
    type Ticks is range 0 .. 2**62
    with Size => 64;
@@ -41,7 +41,7 @@ is
 
    type Times is array (Task_Number) of Ticks
    with Convention => C;
-   --  One for each task; those behind the last task are not looked at.
+   --  One for each task; those behind the last task are ignored.
 
    type Levels is array (Task_Number) of Interfaces.C.int
    with Convention => C;
@@ -49,45 +49,45 @@ is
 
    function Are_Plain
      (Count        : Task_Count;
-      Period, Cost : Times) return Boolean
+      Period, Wcet : Times) return Boolean
    is (for all J in 1 .. Count =>
-         Period (J) < Limit and then Cost (J) in 1 .. Period (J))
+         Period (J) < Limit and then Wcet (J) in 1 .. Period (J))
    with Ghost;
    --  Every task alone fits its core.
 
    function Executed
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       J            : Task_Number;
       Window       : Ticks) return Ticks
-   is (((Window - 1) / Period (J) + 1) * Cost (J))
+   is (((Window - 1) / Period (J) + 1) * Wcet (J))
    with
      Ghost,
      Pre  =>
        Window in 1 .. Limit
        and then Period (J) < Limit
-       and then Cost (J) in 1 .. Period (J),
+       and then Wcet (J) in 1 .. Period (J),
      Post => Executed'Result <= 2 * Limit;
-   --  What the releases of task J within a window execute, the first of them
-   --  at its beginning.
+   --  The execution of the releases of task J within a window, the first of
+   --  them at its beginning.
 
    function Demand
-     (Period, Cost : Times;
+     (Period, Wcet : Times;
       Level        : Task_Count;
       Window       : Ticks) return Ticks
    is (if Level = 0 then 0
-       else Demand (Period, Cost, Level - 1, Window)
-            + Executed (Period, Cost, Level, Window))
+       else Demand (Period, Wcet, Level - 1, Window)
+            + Executed (Period, Wcet, Level, Window))
    with
      Ghost,
      Subprogram_Variant => (Decreases => Level),
      Pre  =>
-       Window in 1 .. Limit and then Are_Plain (Level, Period, Cost),
+       Window in 1 .. Limit and then Are_Plain (Level, Period, Wcet),
      Post => Demand'Result <= Ticks (Level) * (2 * Limit);
    --  The same of the tasks up to Level together.
 
    procedure Find
      (Count        : Task_Count;
-      Period, Cost : Times;
+      Period, Wcet : Times;
       Last         : Levels;
       Blocked      : Times;
       Found        : in out Times)
@@ -96,7 +96,7 @@ is
      Convention    => C,
      External_Name => "find_busy_periods",
      Pre  =>
-       Are_Plain (Count, Period, Cost)
+       Are_Plain (Count, Period, Wcet)
        and then (for all J in 1 .. Count =>
                    Last (J) in J .. Count and then Blocked (J) < Limit),
      Post =>
@@ -105,10 +105,10 @@ is
           or else
             (Found (J) in 1 .. Period (J)
              and then Blocked (J)
-                      + Demand (Period, Cost, Last (J), Found (J))
+                      + Demand (Period, Wcet, Last (J), Found (J))
                       <= Found (J)));
    --  The busy period at the level of each task, which begins with a section
-   --  of a less urgent task of length Blocked; 0 where it is longer than the
-   --  task's period, may have no end, or is given up.
+   --  of a less urgent task of length Blocked. It is 0 where it is longer than
+   --  the task's period, may have no end, or is given up.
 
 end Busy_Periods;

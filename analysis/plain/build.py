@@ -215,21 +215,21 @@ def _frame(row: RowValues, bus: RowValues, highest: int) -> Frame:
         rank = highest - row.number("priority")
     else:
         rank = frames.rank(row.number("identifier"), extended=extended)
-    cost = row.number("cost")
-    if bool(cost) == ("bytes" in row.numbers):
+    longest = row.number("cost")
+    if bool(longest) == ("bytes" in row.numbers):
         raise ValueError(f"message {row.name} must have either bytes or cost_us")
-    if not cost:
+    if not longest:
         length = row.number("bytes")
         fd = row.number("fd")
         bits = (frames.fd_bits if fd else frames.classic_bits)(length, extended=extended)
-        cost = bits.time(bus.number("bit_rate"), bus.number("data_rate"), SECOND)
+        longest = bits.time(bus.number("bit_rate"), bus.number("data_rate"), SECOND)
     period = row.number("period")
     return Frame(
         row.name,
         rank,
         period,
         row.number("deadline", period),
-        cost,
+        longest,
         row.number("jitter"),
         row.word("queue"),
         row.number("best"),

@@ -34,7 +34,7 @@ def longest_times(network: Network) -> dict[str, int]:
             found[name] = max(jobs, default=item.wcet)
             found |= {f"{name}.{row.name}": row.wcet for row in item.rows}
         else:
-            found[name] = item.cost
+            found[name] = item.transmission_time
     return found
 
 

@@ -152,7 +152,7 @@ def _message(response: FrameResponse, bus: str, found: Holistic, detailed: bool)
         "bus": bus,
         "rank": frame.rank,
         "period": frame.period,
-        "cost": frame.cost,
+        "cost": frame.transmission_time,
         "jitter": frame.jitter,
         **_common(frame.name, response, found),
         "blocker": response.blocker or None,

@@ -37,7 +37,7 @@ def row_of(network: Network, found: Holistic, name: str) -> dict[str, Any]:
         "name": name,
         "response": response,
         "item": item,
-        "longest": item.wcet if isinstance(item, Task) else item.cost,
+        "longest": item.wcet if isinstance(item, Task) else item.transmission_time,
         "deadline": deadline,
         "jitter": item.jitter + found.inherited.get(name, 0),
         "bound": bound,

@@ -13,6 +13,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
+from ravenchart import rounded
 from ravenchart.analysis import units
 from ravenchart.analysis.core.tasks import with_full_jobs
 
@@ -36,8 +37,8 @@ def page(template: str, context: Mapping[str, Any]) -> str:
         "us": both,
         "only_us": units.microseconds,
         "duration": units.duration,
-        "percent": units.percent,
-        "seconds": units.seconds,
+        "percent": rounded.percent,
+        "factor": rounded.factor,
         "plain_load": lambda task: with_full_jobs(task).utilisation,
     }
     return _with_contents(environment.get_template(template).render(context))

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from fractions import Fraction
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from ravenchart import rounded
 from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.system.critical import GIVEN, RunningSlice
 from ravenchart.analysis.units import MS
@@ -46,20 +48,21 @@ def figure_svg(figure: Figure) -> str:
     return text[text.index("<svg") :].replace(INK, "currentColor")
 
 
-def room(factors: Sequence[tuple[str, float]], whole: float | None) -> Figure:
+def room(factors: Sequence[tuple[str, Fraction]], whole: Fraction | None) -> Figure:
     """The factors of the execution times of each task alone; a line for all together."""
     figure = Figure(figsize=(11, 1.1 + 0.3 * len(factors)), layout="constrained")
     axes = figure.subplots()
     names = [name for name, _ in factors]
-    shown = [min(factor, LEGIBLE_GROWTH) for _, factor in factors]
+    shown = [min(float(factor), LEGIBLE_GROWTH) for _, factor in factors]
     axes.barh(names, shown, color=COLOURS["own"], height=0.6)
     for place, (_, factor) in enumerate(factors):
-        text = f"{factor:.2f}" if factor < LEGIBLE_GROWTH else f"{factor:.0f} (not to scale)"
+        text = rounded.factor(factor) + (" (not to scale)" if factor >= LEGIBLE_GROWTH else "")
         axes.text(shown[place] + 0.06, place, text, va="center", color=INK, fontsize=8.5)
     axes.axvline(1, color=INK, linewidth=1)
     if whole is not None and whole < LEGIBLE_GROWTH:
-        axes.axvline(whole, color=COLOURS["interference"], linewidth=1.4, linestyle="--")
-        axes.text(whole, -0.75, f" all together: {whole:.2f}", color=INK, fontsize=8.5, va="bottom")
+        at, text = float(whole), f" all together: {rounded.factor(whole)}"
+        axes.axvline(at, color=COLOURS["interference"], linewidth=1.4, linestyle="--")
+        axes.text(at, -0.75, text, color=INK, fontsize=8.5, va="bottom")
     axes.set_xlim(0, LEGIBLE_GROWTH * 1.12)
     axes.set_xlabel("factor of execution times; 1 is the model's", color=INK)
     axes.invert_yaxis()
@@ -171,8 +174,8 @@ def _depth(piece: RunningSlice) -> tuple[int, int]:
 
 def _labels(slices: Sequence[RunningSlice], blocked: str) -> dict[tuple[str, str], str]:
     """The row of each slice; interfering tasks that differ only in the last part share one."""
-    rivals = dict.fromkeys(piece.name for piece in slices if piece.kind == "interference")
-    family = {member: name for name, members in families(rivals).items() for member in members}
+    names = dict.fromkeys(piece.name for piece in slices if piece.kind == "interference")
+    family = {member: name for name, members in families(names).items() for member in members}
     return {
         (piece.name, piece.kind): f"{piece.name}, {blocked}"
         if piece.kind == "blocking" and piece.name != GIVEN

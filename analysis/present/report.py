@@ -96,9 +96,9 @@ class Comparison:
         return self.bound is not None and self.observed > self.bound
 
     @property
-    def ratio(self) -> float:
+    def ratio(self) -> Fraction:
         """Observed over bound; 0 without a bound."""
-        return self.observed / self.bound if self.bound else 0.0
+        return Fraction(self.observed, self.bound) if self.bound else Fraction(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,18 +293,18 @@ def _bus(analysis: Analysis, bus: Bus) -> dict[str, Any]:
     return {"bus": bus, "load": analysis.bus_load(bus), "messages": messages}
 
 
-def _whole(analysis: Analysis) -> float | None:
-    return None if analysis.scaling is None else float(analysis.scaling.factor)
+def _whole(analysis: Analysis) -> Fraction | None:
+    return None if analysis.scaling is None else analysis.scaling.factor
 
 
-def _factors(analysis: Analysis) -> list[tuple[str, float]]:
+def _factors(analysis: Analysis) -> list[tuple[str, Fraction]]:
     """The factor of each of the tightest tasks alone; a driver's work counts together."""
     tight = [name for name in analysis.worst_first() if name in analysis.tasks]
     found = []
     for name, members in list(families(tight).items())[:SCALED]:
         scaling = analysis.scaling_of(*members)
         if scaling is not None:
-            found.append((name, float(scaling.factor)))
+            found.append((name, scaling.factor))
     return sorted(found, key=lambda pair: pair[1])
 
 

@@ -9,12 +9,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ravenchart import rounded
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.timing import Analysis, Verdict
-from ravenchart.analysis.units import microseconds, percent, spoken
+from ravenchart.analysis.units import microseconds
 
 WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 """The verdict of a row in a word."""
@@ -36,7 +37,9 @@ def verdict_line(analysis: Analysis) -> str:
     name, failed = analysis.system.name, analysis.failed()
     tasks, messages = len(analysis.tasks), len(analysis.messages)
     total = f"{tasks} tasks" + (f", {messages} messages" if messages else "")
-    over = [f"{name} ({percent(load)})" for name, load in analysis.loads.items() if load > 1]
+    over = [
+        f"{name} ({rounded.percent(load)})" for name, load in analysis.loads.items() if load > 1
+    ]
     late = [chain.name for chain, found in analysis.limited if not found.met]
     parts = []
     if failed:
@@ -59,10 +62,10 @@ def verdict_line(analysis: Analysis) -> str:
 
 def overload_lines(loads: Mapping[str, Fraction]) -> tuple[str, ...]:
     """One line for each core or bus that needs more than all of its time."""
+    over = {name: rounded.percent(share) for name, share in loads.items() if share > 1}
     return tuple(
-        f"{name or 'the core'} is overloaded: what runs on it needs {percent(share)} of its time"
-        for name, share in loads.items()
-        if share > 1
+        f"{name or 'the core'} is overloaded: what runs on it needs {share} of its time"
+        for name, share in over.items()
     )
 
 
@@ -71,14 +74,12 @@ def load_lines(analysis: Analysis) -> tuple[str, ...]:
     system = analysis.system
     lines = list(overload_lines(analysis.loads))
     lines += [
-        f"{core}: core load {percent(analysis.utilisation(core))}"
+        f"{core}: core load {rounded.percent(analysis.utilisation(core))}"
         for node in system.nodes
         for core in node.core_names
     ]
-    lines += [
-        f"{bus.name}: bus load {percent(analysis.bus_load(bus))}, every frame at its longest"
-        for bus in system.buses
-    ]
+    of_buses = ((bus.name, rounded.percent(analysis.bus_load(bus))) for bus in system.buses)
+    lines += [f"{name}: bus load {load}, every frame at its longest" for name, load in of_buses]
     return (*lines, growth_line(analysis), *binding_lines(analysis))
 
 
@@ -88,10 +89,10 @@ def growth_line(analysis: Analysis) -> str:
     if scaling is None:
         return "no execution time, however short, meets every deadline"
     change = scaling.factor - 1
-    share = f"{float(abs(change) * 100):.1f} %"
     if change >= 0:
+        share = rounded.room(change)
         return f"all execution times may grow by {share} before a task or frame is late"
-    return f"all execution times must shrink by {share} to meet every deadline"
+    return f"all execution times must shrink by {rounded.percent(-change)} to meet every deadline"
 
 
 def binding(analysis: Analysis) -> str | None:
@@ -109,13 +110,13 @@ def binding_lines(analysis: Analysis) -> tuple[str, ...]:
     slack = analysis.slack(name)
     room = "has no bound"
     if slack is not None:
-        room = f"misses by {spoken(-slack)}" if slack < 0 else ""
-        room = room or f"is the tightest, with a slack of {spoken(slack)}"
+        room = f"misses by {rounded.up(-slack)}" if slack < 0 else ""
+        room = room or f"is the tightest, with a slack of {rounded.down(slack)}"
     parts = sorted(window_parts(analysis, name), key=lambda part: -part.time)
     if not parts:
         return (f"{name} {room}",)
     total = sum(part.time for part in parts)
-    share = percent(Fraction(parts[0].time, total))
+    share = rounded.percent(Fraction(parts[0].time, total))
     return (f"{name} {room}: {share} of its response is {parts[0].name}",)
 
 
@@ -169,11 +170,11 @@ def _task_parts(response: Response) -> list[TextPart]:
     for family, members in families(by_name).items():
         each = [by_name[member] for member in members]
         releases = sum(share.releases for share in each)
-        costs = {share.task.plain_wcet for share in each}
+        wcets = {share.task.plain_wcet for share in each}
         time = sum(share.time for share in each)
-        plain = len(costs) == 1 and releases * max(costs) == time
-        cost = microseconds(max(costs))
-        sum_of = f"{releases} x {cost}" if plain else f"{releases} releases"
+        plain = len(wcets) == 1 and releases * max(wcets) == time
+        longest = microseconds(max(wcets))
+        sum_of = f"{releases} x {longest}" if plain else f"{releases} releases"
         parts.append(TextPart("interference", family, sum_of, time))
     lost = response.overheads
     for what, count, time in (
@@ -189,12 +190,12 @@ def _task_parts(response: Response) -> list[TextPart]:
 
 
 def _frame_parts(response: FrameResponse) -> list[TextPart]:
-    own = response.own + response.frame.cost
+    own = response.own + response.frame.transmission_time
     parts = [TextPart("own", "its own frame", "", own)]
     blocker = response.blocker or "a frame of somebody else"
     parts.append(TextPart("blocking", blocker, "", response.blocked))
     for share in response.interference:
-        sum_of = f"{share.instances} x {microseconds(share.frame.cost)}"
+        sum_of = f"{share.instances} x {microseconds(share.frame.transmission_time)}"
         parts.append(TextPart("interference", share.frame.name, sum_of, share.time))
     parts.append(TextPart("overhead", "errors", "", response.errors))
     return parts

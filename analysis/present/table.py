@@ -12,17 +12,17 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ravenchart import terminal
+from ravenchart import rounded, terminal
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings import advice
 from ravenchart.analysis.system.timing import Analysis, Verdict
-from ravenchart.analysis.units import microseconds
+from ravenchart.rounded import TimeUnit
 
 from .sentences import WORDS, load_lines, offset_lines, verdict_line
 
 LEGEND = (
-    "Times in us: T period, D deadline, C execution or transmission, J jitter,\n"
-    "B blocking, R response."
+    "Times in {}, rounded to the safe side: T period, D deadline, C execution or\n"
+    "transmission, J jitter, B blocking, R response."
 )
 
 
@@ -34,14 +34,14 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     for line in load_lines(analysis):
         out.print(Text(line))
     out.print()
-    worst = analysis.worst_first()
-    out.print(_table(analysis, "task", [name for name in worst if name in analysis.tasks]))
+    worst, unit = analysis.worst_first(), _unit_of(analysis)
+    out.print(_table(analysis, "task", [name for name in worst if name in analysis.tasks], unit))
     if analysis.messages:
         sent = [name for name in worst if name in analysis.messages]
-        out.print(_table(analysis, "message", sent))
+        out.print(_table(analysis, "message", sent, unit))
     if analysis.limited:
-        out.print(_chains(analysis))
-    out.print(Text(LEGEND, style="dim"))
+        out.print(_chains(analysis, unit))
+    out.print(Text(LEGEND.format(unit.name), style="dim"))
     for line in offset_lines(analysis.responses):
         out.print(Text(line))
     for line in advice.lines(advice.of_model(analysis)):
@@ -58,38 +58,44 @@ def _new_table(name: str, *columns: str) -> Table:
     return table
 
 
-def _table(analysis: Analysis, kind: str, names: list[str]) -> Table:
+def _unit_of(analysis: Analysis) -> TimeUnit:
+    """The unit of all tables of this analysis."""
+    return rounded.unit_of(item.period for item in analysis.network.items().values())
+
+
+def _table(analysis: Analysis, kind: str, names: list[str], unit: TimeUnit) -> Table:
     """The rows of these tasks or messages, in that order."""
     table = _new_table(kind, "T", "D", "C", "J", "B", "R", "slack")
     for name in names:
         met = analysis.verdict(name) is Verdict.MET
-        table.add_row(*_cells(analysis, name), style="" if met else "bold red")
+        table.add_row(*_cells(analysis, name, unit), style="" if met else "bold red")
     return table
 
 
-def _cells(analysis: Analysis, name: str) -> tuple[str, ...]:
+def _cells(analysis: Analysis, name: str, unit: TimeUnit) -> tuple[str, ...]:
     """The cells of one task or message."""
     response = analysis.found.responses[name]
     item = analysis.network.items()[name]
-    longest = analysis.tasks[name].wcet if isinstance(item, Task) else item.cost
+    longest = analysis.tasks[name].wcet if isinstance(item, Task) else item.transmission_time
     jitter = item.jitter + analysis.found.inherited.get(name, 0)
-    times = (item.period, item.deadline, longest, jitter, response.blocked)
-    bound, slack = analysis.found.from_event(name), analysis.slack(name)
+    bound, deadline = unit.against(analysis.found.from_event(name), item.deadline)
     return (
         name,
-        *map(microseconds, times),
-        "-" if bound is None else microseconds(bound),
-        "-" if slack is None else microseconds(slack),
+        unit.down(item.period),
+        deadline,
+        *map(unit.up, (longest, jitter, response.blocked)),
+        bound,
+        unit.down(analysis.slack(name)),
         WORDS[analysis.verdict(name)],
     )
 
 
-def _chains(analysis: Analysis) -> Table:
+def _chains(analysis: Analysis, unit: TimeUnit) -> Table:
     """The chains with limits."""
     table = _new_table("chain", "reaction", "limit", "age", "limit")
     for chain, found in analysis.limited:
-        times = (found.reaction, chain.reaction, found.age, chain.age)
-        cells = ["-" if time is None else microseconds(time) for time in times]
+        reaction = unit.against(found.reaction, chain.reaction)
+        age = unit.against(found.age, chain.age)
         word = "ok" if found.met else "MISS"
-        table.add_row(chain.name, *cells, word, style="" if found.met else "bold red")
+        table.add_row(chain.name, *reaction, *age, word, style="" if found.met else "bold red")
     return table

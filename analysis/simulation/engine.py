@@ -75,7 +75,7 @@ def simulate(
     natural("the simulation", until=until)
     for core, platform in network.platforms.items():
         if platform != Platform():
-            raise ValueError(f"overheads of core {core} cannot be simulated: add them to the costs")
+            raise ValueError(f"overheads of core {core} cannot be simulated: add them to the WCETs")
     return _Engine(network, scenario, until, record).run()
 
 

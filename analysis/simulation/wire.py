@@ -43,7 +43,9 @@ class Wire:
         if self.arbitrating:
             return self.start + self.bus.bit_time
         if self.sending is not None:
-            end = max(self.start + self.sending.frame.cost, self.start + self.bus.bit_time)
+            end = max(
+                self.start + self.sending.frame.transmission_time, self.start + self.bus.bit_time
+            )
             fault = self._next_fault()
             return (
                 end if fault is None or fault > end else max(fault, self.start + self.bus.bit_time)
@@ -60,7 +62,7 @@ class Wire:
         if message is None:
             return None
         self.sending = None
-        if now >= self.start + message.frame.cost:
+        if now >= self.start + message.frame.transmission_time:
             self.free = now
             self.queued.remove(message)
             return message

@@ -99,7 +99,7 @@ def of_frame(response: FrameResponse) -> WorstCase:
     if response.bound is None:
         raise ValueError(f"message {frame.name} has no bound")
     lead = level.bus.bit_time + max(other.jitter for other in level.order)
-    until = lead + response.instances * frame.period + response.window + frame.cost
+    until = lead + response.instances * frame.period + response.window + frame.transmission_time
     phases = _together(level.order[: level.reach], lead, {})
     for other in level.order[level.reach :]:
         blocker = other.name == response.blocker

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class CommandTimes:
     """A required command of a row; times in ns, None where there is no bound.
 
-    ``how`` is ``direct``, ``queued``, over a bus, ``copied`` or ``stand-in`` (a fallback).
+    ``how`` is ``direct``, ``queued``, over a bus, ``copied`` or ``fallback``.
     """
 
     caller: str
@@ -86,8 +86,10 @@ def _times(analysis: Analysis, binding: Binding, row: End) -> CommandTimes:
         served = serving(provider)
         found = from_release(analysis, (row, served))
         return CommandTimes(caller, need.name, str(served), "queued", 0, found, waits=True)
-    stand_in = "" if need.stand_in is None else f"{binding.instance}.{need.stand_in.item}"
-    return CommandTimes(caller, need.name, stand_in or "nothing", "stand-in", 0)
+    fallback = "nothing"
+    if need.fallback is not None:
+        fallback = f"{binding.instance}.{need.fallback.item}"
+    return CommandTimes(caller, need.name, fallback, "fallback", 0)
 
 
 def from_release(analysis: Analysis, way: Sequence[Stop]) -> int | None:

@@ -82,16 +82,18 @@ def frame_schedule(response: FrameResponse) -> tuple[RunningSlice, ...]:
         return ()
     level, frame = response.level, response.frame
     jobs: list[Job] = [
-        (time, 0, level.error_cost, "errors", "overhead") for time in response.error_times
+        (time, 0, level.error_overhead, "errors", "overhead") for time in response.error_times
     ]
     for place, other in enumerate(level.order[: level.reach], 1):
         if other.name != frame.name:
             times = response.queued(other)
-            jobs += [(time, place, other.cost, other.name, "interference") for time in times]
+            jobs += [
+                (time, place, other.transmission_time, other.name, "interference") for time in times
+            ]
     first = response.lead - response.worst_instance * frame.period
     for instance in range(response.worst_instance + 1):
         time = max(0, first + instance * frame.period)
-        jobs.append((time, level.reach + 1 + instance, frame.cost, frame.name, "own"))
+        jobs.append((time, level.reach + 1 + instance, frame.transmission_time, frame.name, "own"))
     if len(jobs) > MOST_JOBS:
         return ()
     now = response.blocked
@@ -127,13 +129,13 @@ def _jobs(response: Response) -> list[Job]:
     count = response.worst_job + 1
     first = response.lead - response.worst_job * response.task.period
     for job in range(count):
-        frame = (response.frame - response.worst_job + job) % len(own.costs)
+        frame = (response.frame - response.worst_job + job) % len(own.wcets)
         time = max(0, first + job * response.task.period)
-        jobs.append((time, len(others) + 1 + job, own.costs[frame], response.task.name, "own"))
-    if platform.tick_cost:
+        jobs.append((time, len(others) + 1 + job, own.wcets[frame], response.task.name, "own"))
+    if platform.tick_wcet:
         ticks = releases_in(window, platform.tick_period, 0)
         times = [n * platform.tick_period for n in range(ticks)]
-        jobs += [(time, 0, platform.tick_cost, "ticks and releases", "overhead") for time in times]
+        jobs += [(time, 0, platform.tick_wcet, "ticks and releases", "overhead") for time in times]
     for task in level.order if platform.release else ():
         for time in _times(task, response):
             jobs.append((time, 0, release_time(task, platform), "ticks and releases", "overhead"))
@@ -147,5 +149,5 @@ def _times(task: Task, response: Response) -> list[int]:
 
 def _released(task: Task, response: Response, place: int, kind: str) -> list[Job]:
     """The jobs of an interfering task, with its known jobs of the cycle or the longest ones."""
-    costs = demand_of(task, response.level.platform).costs
-    return [(time, place, costs[frame], task.name, kind) for time, frame in response.released(task)]
+    wcets = demand_of(task, response.level.platform).wcets
+    return [(time, place, wcets[frame], task.name, kind) for time, frame in response.released(task)]

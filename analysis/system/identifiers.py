@@ -18,11 +18,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ravenchart import rounded
 from ravenchart.analysis.core.assignment import Order, audsley_frames, responses_in_place
 from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.frames import leading_of_rank
-from ravenchart.analysis.units import percent, spoken
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
@@ -109,9 +109,8 @@ def _refusal(
         text = f"{_some(len(left) - 1)} would go before {message.name}, {len(placed)} after it"
         notes = [(message.origin, text)]
     if first.blocker:
-        text = (
-            f"{messages[first.blocker].name} may block {message.name} for {spoken(first.blocked)}"
-        )
+        blocked = rounded.up(first.blocked)
+        text = f"{messages[first.blocker].name} may block {message.name} for {blocked}"
         notes.append((messages[first.blocker].origin, text))
     notes += [
         (messages[one.frame.name].origin, f"{messages[one.frame.name].name} {_needs(one)}")
@@ -142,6 +141,7 @@ def _some(number: int) -> str:
 def _needs(response: FrameResponse) -> str:
     """The words for a missed deadline of a message at a place."""
     if response.bound is None:
-        load = percent(response.level.load)
+        load = rounded.percent(response.level.load)
         return f"has no bound: it and the messages before it need {load} of the bus"
-    return f"has R = {spoken(response.bound)} > D = {spoken(response.frame.deadline)}"
+    bound, deadline = rounded.against(response.bound, response.frame.deadline)
+    return f"has R = {bound} > D = {deadline}"

@@ -307,6 +307,6 @@ def _of_message(
     return [*steps_made[:-1], replace(steps_made[-1], keeps=keeps)]
 
 
-def _item(name: str, period: int, cost: int) -> Task:
+def _item(name: str, period: int, wcet: int) -> Task:
     """A row or a handing over, as an item of chains."""
-    return Task(name, 0, period, period, cost)
+    return Task(name, 0, period, period, wcet)

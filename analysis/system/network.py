@@ -80,8 +80,8 @@ def _task(task: model.Task, system: System) -> Task:
 def _platform(node: nodes.Node) -> Platform:
     """The overheads of a node."""
     tick = node.tick
-    period, cost = (0, 0) if tick is None else (tick.period, tick.wcet)
-    return Platform(node.context_switch, node.release, period, cost)
+    period, wcet = (0, 0) if tick is None else (tick.period, tick.wcet)
+    return Platform(node.context_switch, node.release, period, wcet)
 
 
 def _frame(message: Message, bus: buses.Bus, system: System) -> Frame:
@@ -91,7 +91,7 @@ def _frame(message: Message, bus: buses.Bus, system: System) -> Frame:
         rank=rank(message.identifier, extended=message.extended),
         period=message.period,
         deadline=message.limit,
-        cost=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
+        transmission_time=frame_length(message, bus).time(bus.bit_rate, bus.data_rate or 0),
         queue=system.queue(message),
         reloaded=system.queue(message) != "",
         sporadic=message.sporadic,

@@ -75,20 +75,20 @@ class Goal:
     def text(self) -> str:
         """In words."""
         component, region, name = self.element
-        place, decision = f"{component}.{region}.{name}", self.decision.value
+        named, decision = f"{component}.{region}.{name}", self.decision.value
         match self.kind:
             case GoalKind.TAKEN:
-                return f"{place} is taken"
+                return f"{named} is taken"
             case GoalKind.TRUE:
-                return f"the {decision} of {place} is true"
+                return f"the {decision} of {named} is true"
             case GoalKind.FALSE:
-                return f"the {decision} of {place} is false"
+                return f"the {decision} of {named} is false"
             case GoalKind.CONDITION:
                 assert isinstance(self.detail, int)
-                return f"condition {self.detail + 1} of the {decision} of {place} decides it"
+                return f"condition {self.detail + 1} of the {decision} of {named} decides it"
             case GoalKind.LEFT:
-                return f"{place} leaves {self.detail}"
-        return f"{self.detail} is deferred in {place}"
+                return f"{named} leaves {self.detail}"
+        return f"{self.detail} is deferred in {named}"
 
 
 def goals_of(system: System) -> list[Goal]:
@@ -235,8 +235,8 @@ class GoalCoverage:
             and other.deferred <= self.deferred
             and other.left <= self.left
             and all(
-                evaluations <= self.evaluations.get(place, set())
-                for place, evaluations in other.evaluations.items()
+                evaluations <= self.evaluations.get(one, set())
+                for one, evaluations in other.evaluations.items()
             )
         )
 
@@ -281,6 +281,6 @@ def _decides(number: int, one: GuardValues, other: GuardValues) -> bool:
         return False
     return all(
         a is b or a is None or b is None
-        for place, (a, b) in enumerate(zip(one[0], other[0], strict=True))
-        if place != number
+        for index, (a, b) in enumerate(zip(one[0], other[0], strict=True))
+        if index != number
     )

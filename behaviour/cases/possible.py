@@ -304,17 +304,17 @@ class _PossibleCoverage:
     def _shown_by(self, thread: Thread, outcome: Outcome) -> GoalCoverage:
         """The coverage of an outcome."""
         shown, tree = GoalCoverage(), thread.tree
-        place = self.component.name, thread.name
+        region = self.component.name, thread.name
         for name, decision, values in outcome.noted:
-            shown.decide((*place, name), decision, values)
+            shown.decide((*region, name), decision, values)
         leaves = [s for s in {*outcome.before.active, *outcome.entered} if tree.states[s].is_leaf]
         for name in outcome.fired:
-            shown.take((*place, name))
+            shown.take((*region, name))
             for leaf in leaves:
                 if tree.source_of(name) in tree.around(leaf):
-                    shown.leave((*place, name), leaf)
+                    shown.leave((*region, name), leaf)
         for state in outcome.before.active if outcome.deferred else ():
             event = outcome.occurrence.subject
             if event in tree.states[state].defers:
-                shown.defer((*place, state), event)
+                shown.defer((*region, state), event)
         return shown

@@ -34,7 +34,7 @@ class PlayedScene:
 
     values: tuple[Raised | Arrived, ...]
     events: tuple[Raised | Arrived, ...]
-    places: frozenset[tuple[str, str]]
+    receivers: frozenset[tuple[str, str]]
     """The ports that have these values, or at which nothing comes; instance and port."""
     time: int
     """In ns: ports and region are executed once in it."""
@@ -109,8 +109,8 @@ class ScenePlayer:
         time = run.component.region(scene.region).timing.period
         if run.component.port_region is not None:
             time = max(time, run.component.port_region.period)
-        places = frozenset((name, what) for what in needed)
-        return PlayedScene(tuple(values), tuple(events), places, time)
+        receivers = frozenset((name, what) for what in needed)
+        return PlayedScene(tuple(values), tuple(events), receivers, time)
 
 
 def _numbers(values: Iterable[Value]) -> set[int]:

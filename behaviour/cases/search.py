@@ -214,8 +214,8 @@ class CaseSearch:
             self.alike.append(alike)
         kept = Branch(branched(branch.machine), branch.at, branch.entries)
         alike.append(kept)
-        for place in self._active(kept):
-            self.near.setdefault(place, []).append(kept)
+        for state in self._active(kept):
+            self.near.setdefault(state, []).append(kept)
 
     def _active(self, branch: Branch) -> dict[GoalElement, str]:
         """The active states of each component and region, each with an instance."""
@@ -229,8 +229,8 @@ class CaseSearch:
     def _near(self, branch: Branch) -> list[tuple[str, Goal]]:
         """The open goals whose state is active, each with an instance where it is."""
         active = self._active(branch)
-        places = ((goal, (*goal.element[:2], goal.state)) for goal in self._wanted_first())
-        return [(active[place], goal) for goal, place in places if place in active]
+        states = ((goal, (*goal.element[:2], goal.state)) for goal in self._wanted_first())
+        return [(active[state], goal) for goal, state in states if state in active]
 
     def _go_on(self, branch: Branch) -> None:
         """Go on from a branch in one of three ways, each with its share of the effort."""
@@ -270,7 +270,7 @@ class CaseSearch:
                 stages = [self._drawn(branch, now) if self.choices else ()]
             else:
                 stages = [some for some in (scene.values, scene.events) if some] or [()]
-                fed = [feed for feed in fed if feed.entry.place not in scene.places]
+                fed = [feed for feed in fed if feed.entry.receiver not in scene.receivers]
                 fed += self._kept_fresh(scene.values)
                 wait = self._instants_in(scene.time)
             for coming in stages:
@@ -333,7 +333,7 @@ class CaseSearch:
     def _kept_fresh(self, coming: Sequence[Stimulus]) -> Iterator[Feed]:
         """The given values, repeated where they grow stale."""
         for entry in coming:
-            age = self.ages.get(entry.place)
+            age = self.ages.get(entry.receiver)
             if age is not None:
                 yield Feed(entry, age // 2, entry.at + age // 2)
 
@@ -456,8 +456,8 @@ def _cell(value: Value, cuts: Sequence[int]) -> object:
         return tuple(_cell(one, cuts) for _, one in value)
     if not isinstance(value, int):
         return value
-    place = bisect(cuts, value)
-    if 0 < place < len(cuts):
-        low, high = cuts[place - 1], cuts[place]
-        return place, 4 * (value - low) // (high - low)
-    return place
+    above = bisect(cuts, value)
+    if 0 < above < len(cuts):
+        low, high = cuts[above - 1], cuts[above]
+        return above, 4 * (value - low) // (high - low)
+    return above

@@ -72,8 +72,8 @@ class InstanceRun:
 
     def _works_in(self, region: Region) -> list[str]:
         """The states of a region that have a do activity."""
-        places = [a.while_in for a in self.component.activities if a.while_in is not None]
-        return [place.state for place in places if place.region == region.name]
+        states = [a.while_in for a in self.component.activities if a.while_in is not None]
+        return [one.state for one in states if one.region == region.name]
 
     def view(self) -> View:
         """The values that an execution reads when it begins now."""
@@ -257,10 +257,10 @@ class Machine:
                 self._record(now, own.instance.name, data.name, own.data[data.name])
 
     def _run_activity(self, now: Ns, own: InstanceRun, activity: Activity) -> None:
-        place = activity.while_in
+        state = activity.while_in
         if activity.flow is None:
             return
-        if place is not None and place.state not in own.regions[place.region].published:
+        if state is not None and state.state not in own.regions[state.region].published:
             return
         view, out = own.view(), Outbox()
         perform(activity.flow, view, out)
@@ -268,8 +268,8 @@ class Machine:
         for name in activity.writes:
             self._record(now, own.instance.name, name, own.data[name])
         raised = dict(out.raised)
-        if place is not None and DONE in raised:
-            own.regions[place.region].finish(place.state)
+        if state is not None and DONE in raised:
+            own.regions[state.region].finish(state.state)
         in_order = [(event, raised[event]) for event in activity.raises if event in raised]
         out.raised = [one for one in in_order if one[0] != DONE]
         self._deliver(now, own, out)

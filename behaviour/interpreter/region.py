@@ -182,7 +182,7 @@ class RegionRun:
         if self.stopped:
             return self._step
         if not self.active:
-            self._enter_place(TOP, ())
+            self._enter_region(TOP, ())
             self._settle()
             return self._step
         occurrence = self._next()
@@ -247,10 +247,10 @@ class RegionRun:
     # --- selection
 
     def _selected(
-        self, place: RegionKey, occurrence: Occurrence
+        self, region: RegionKey, occurrence: Occurrence
     ) -> Iterator[ExecutedTransition | Deferral]:
         """The selection in a region: from inside the active state, or else of the state itself."""
-        state = self.active.get(place)
+        state = self.active.get(region)
         if state not in self.tree.states:
             return
         inside = [
@@ -287,8 +287,8 @@ class RegionRun:
         if not self._lets_through(first):
             return None
         if first.kind is TransitionKind.INTERNAL:
-            place = self.tree.slots[first.source]
-            return ExecutedTransition(first.source, place, (first,), (), internal=True)
+            region = self.tree.slots[first.source]
+            return ExecutedTransition(first.source, region, (first,), (), internal=True)
         path = self._path((first,))
         if path is None:
             return None
@@ -304,8 +304,8 @@ class RegionRun:
             scope = within[0] if within else scope
         return ExecutedTransition(first.source, scope, path, goals)
 
-    def _is_in(self, place: RegionKey, *vertices: str) -> bool:
-        return all(place in self.tree.places(vertex) for vertex in vertices)
+    def _is_in(self, region: RegionKey, *vertices: str) -> bool:
+        return all(region in self.tree.regions_around(vertex) for vertex in vertices)
 
     def _path(self, taken: tuple[Transition, ...]) -> tuple[Transition, ...] | None:
         """The first way on through junctions and joins whose guards all hold."""
@@ -351,11 +351,11 @@ class RegionRun:
 
     def _fire(self, firing: ExecutedTransition) -> None:
         if not firing.internal:
-            self._exit_place(firing.scope)
+            self._exit_region(firing.scope)
         for transition in firing.effects:
             self._effect(transition)
         if not firing.internal:
-            self._enter_place(firing.scope, firing.goals)
+            self._enter_region(firing.scope, firing.goals)
 
     def _settle(self) -> None:
         """Go on from choices and histories, in model order, until none is active."""
@@ -373,9 +373,9 @@ class RegionRun:
         message = f"{self.region.name} goes from pseudostate to pseudostate without end"
         raise Stuck(self.region.origin, message)
 
-    def _passing(self, place: RegionKey) -> Iterator[str]:
+    def _passing(self, region: RegionKey) -> Iterator[str]:
         """The pseudostates that are active, in model order."""
-        vertex = self.active.get(place)
+        vertex = self.active.get(region)
         if vertex in self.tree.kinds:
             yield vertex
         elif vertex is not None:
@@ -393,22 +393,22 @@ class RegionRun:
 
     def _restore(self, vertex: str) -> None:
         """Go on from a history pseudostate."""
-        place = self.tree.slots[vertex]
-        last = self.history.get(place)
+        region = self.tree.slots[vertex]
+        last = self.history.get(region)
         if last is None and self.tree.outgoing[vertex]:
             self._fire(self._way_out(vertex))
             return
         goals: list[str] = []
         if self.tree.kinds.get(vertex) is PseudoKind.DEEP_HISTORY:
-            goals = self._recorded(place)
+            goals = self._recorded(region)
         elif last is not None:
-            goals = [self.tree.path(last, place)[0]]
-        del self.active[place]
-        self._enter_place(place, tuple(NamedGoal(goal) for goal in goals))
+            goals = [self.tree.path(last, region)[0]]
+        del self.active[region]
+        self._enter_region(region, tuple(NamedGoal(goal) for goal in goals))
 
-    def _recorded(self, place: RegionKey) -> list[str]:
+    def _recorded(self, region: RegionKey) -> list[str]:
         """The leaves that deep history finds in a region; none: enter it by default."""
-        last = self.history.get(place)
+        last = self.history.get(region)
         if last is None:
             return []
         state = self.tree.states[last]
@@ -419,15 +419,15 @@ class RegionRun:
 
     # --- leaving and entering
 
-    def _exit_place(self, place: RegionKey) -> None:
-        vertex = self.active.get(place)
+    def _exit_region(self, region: RegionKey) -> None:
+        vertex = self.active.get(region)
         if vertex in self.tree.states:
             self._exit(vertex)
-        self.active.pop(place, None)
+        self.active.pop(region, None)
 
     def _exit(self, name: str) -> None:
         for nested in self.tree.regions_of(name):
-            self._exit_place(nested)
+            self._exit_region(nested)
         state = self.tree.states[name]
         if not state.final:
             self._behave(f"{name}.exit", state.exit)
@@ -438,27 +438,27 @@ class RegionRun:
         self._left.add(name)
         self.completed.discard(name)
         self.done.discard(name)
-        if self.tree.fills_lane(name):
-            for place in self.tree.lane_slots(name):
-                self.history[place] = name
+        if self.tree.is_innermost(name):
+            for region in self.tree.inner_regions(name):
+                self.history[region] = name
             if state.final:
                 del self.history[self.tree.slots[name]]
 
-    def _enter_place(self, place: RegionKey, goals: Sequence[NamedGoal]) -> None:
+    def _enter_region(self, region: RegionKey, goals: Sequence[NamedGoal]) -> None:
         """Enter a region on the way to goals in it, or by default when there is none."""
         if not goals:
-            goals = (self._initial(place),)
+            goals = (self._initial(region),)
         elif len(goals) == 1 and goals[0].segment is not None:
             self._effect(goals[0].segment)
             goals = (NamedGoal(goals[0].vertex),)
-        vertex = self.tree.path(goals[0].vertex, place)[0]
-        self.active[place] = vertex
+        vertex = self.tree.path(goals[0].vertex, region)[0]
+        self.active[region] = vertex
         if vertex in self.tree.states:
             self._enter(vertex, [goal for goal in goals if goal.vertex != vertex])
 
-    def _initial(self, place: RegionKey) -> NamedGoal:
+    def _initial(self, region: RegionKey) -> NamedGoal:
         """Take the initial transition of a region."""
-        owner, name = place
+        owner, name = region
         if owner is None:
             initial, shown = self.region.initial, self.region.name
         else:
@@ -476,7 +476,7 @@ class RegionRun:
                 self.timers[transition.name] = self.executions + transition.trigger.executions
         for nested in self.tree.regions_of(name):
             inside = [goal for goal in goals if self._is_in(nested, goal.vertex)]
-            self._enter_place(nested, inside)
+            self._enter_region(nested, inside)
         if state.final and state.parent is not None:
             self._complete(state.parent)
         elif state.is_leaf:
@@ -491,7 +491,7 @@ class RegionRun:
 
     def _is_complete(self, state: str) -> bool:
         """Whether an active state is: its regions final, its do activity done."""
-        inside = [self.active.get(place) for place in self.tree.regions_of(state)]
+        inside = [self.active.get(region) for region in self.tree.regions_of(state)]
         final = all(one in self.tree.states and self.tree.states[one].final for one in inside)
         return final and (state not in self.works_in or state in self.done)
 

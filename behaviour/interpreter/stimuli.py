@@ -53,7 +53,7 @@ class Raised:
     value: Value | None
 
     @property
-    def place(self) -> tuple[str, str]:
+    def receiver(self) -> tuple[str, str]:
         """Instance and event."""
         return self.instance, self.event
 
@@ -67,7 +67,7 @@ class Arrived:
     value: Value
 
     @property
-    def place(self) -> tuple[str, str]:
+    def receiver(self) -> tuple[str, str]:
         """Instance and port."""
         return self.end.instance, self.end.name
 
@@ -92,8 +92,8 @@ def written_stimuli(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
                 assert value is not None
                 lines.append(f"- {{at: {at}, raise: {instance}.{event}, with: {_text(value)}}}")
             case Arrived(end=end, value=value):
-                place = f"{end.instance}.{end.name}"
-                lines.append(f"- {{at: {at}, put: {place}, value: {_text(value)}}}")
+                port = f"{end.instance}.{end.name}"
+                lines.append(f"- {{at: {at}, put: {port}, value: {_text(value)}}}")
     lines.append(f"- {{until: {shown(stimuli.until) if stimuli.until else 0}}}")
     return "".join(f"{line}\n" for line in lines)
 
@@ -120,14 +120,14 @@ def read_stimuli(
             reading.wrong("RV-1001", Origin(file, 1, 1), message, f"each is {FORMS}")
         return None, tuple(reading.found)
     until = None
-    for item, place in zip(tree, tree.items_at, strict=True):
+    for item, at in zip(tree, tree.items_at, strict=True):
         if until is not None:
-            reading.wrong("RV-1006", place.origin, "nothing comes after `until`")
+            reading.wrong("RV-1006", at.origin, "nothing comes after `until`")
             break
         if isinstance(item, Map):
             until = reading.take(item)
         else:
-            reading.wrong("RV-1002", place.origin, "this is no mapping", f"each is {FORMS}")
+            reading.wrong("RV-1002", at.origin, "this is no mapping", f"each is {FORMS}")
     if until is None and not reading.found:
         last = tree.items_at[-1].origin if tree else tree.origin
         hint = "end with the last instant, such as `- {until: 2 s}`"

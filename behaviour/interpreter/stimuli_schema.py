@@ -17,7 +17,7 @@ _SCALAR: dict[str, Any] = {"type": ["integer", "boolean", "string"]}
 _VALUE = {"anyOf": [_SCALAR, {"type": "object", "additionalProperties": {"$ref": "#/$defs/Value"}}]}
 
 
-def _place(what: str) -> dict[str, Any]:
+def _receiver(what: str) -> dict[str, Any]:
     return {"type": "string", "pattern": r"^\w+(\.\w+)+$", "description": what}
 
 
@@ -34,8 +34,8 @@ def _entry(what: str, required: list[str], **properties: Any) -> dict[str, Any]:
 def events_schema() -> dict[str, Any]:
     """The schema; names and values are checked with the model alone."""
     value, at = {"$ref": "#/$defs/Value"}, {"$ref": "#/$defs/Time"}
-    raised = {"raise": _place("instance.event"), "with": value}
-    arrived = {"put": _place("instance.port"), "value": value}
+    raised = {"raise": _receiver("instance.event"), "with": value}
+    arrived = {"put": _receiver("instance.port"), "value": value}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Ravenchart: an event file",

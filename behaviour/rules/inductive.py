@@ -150,7 +150,8 @@ def _of_region(
 def _guarded(region: Region) -> Iterator[str]:
     """The transitions whose guards another region may make false before they are taken."""
     for one in region.transitions:
-        if isinstance(one.trigger, Segment) or knows_guards(region, region.lane(one.source)):
+        own = region.concurrent_region(one.source)
+        if isinstance(one.trigger, Segment) or knows_guards(region, own):
             continue
         if one.guard is not None or isinstance(one.trigger, When):
             yield one.name
@@ -185,8 +186,8 @@ class _Search:
         self.tree = ChartTree(self.region)
         self.moves = list(moves_of(self.tree, self.symbol, self.alone))
         self.bad = {i.name: logic.term(i.condition, self.of_condition) for i in self.invariants}
-        places = {move.after for move in self.moves}
-        marked = {v for place in places for v in place.vertices if self.is_marked(v)}
+        positions = {move.after for move in self.moves}
+        marked = {v for one in positions for v in one.vertices if self.is_marked(v)}
         self.allowed: dict[Held, set[int]] = {
             (vertex, name): set() for vertex in sorted(marked) for name in self.cells
         }
@@ -230,10 +231,10 @@ class _Search:
             pairs = dict(move.updates)
         return [(self.symbol(n), v) for n, v in pairs.items()]
 
-    def violated(self, name: str, place: Position) -> Term:
+    def violated(self, name: str, position: Position) -> Term:
         """That a position, as the condition sees it, violates an invariant."""
         states = [
-            (self.symbol(one), z3.BoolVal(one[2] in place.active))
+            (self.symbol(one), z3.BoolVal(one[2] in position.active))
             for one in list(self.symbols)
             if one[0] == "in" and one[1] == self.region.name
         ]
@@ -250,11 +251,11 @@ class _Search:
 
     def before(self, move: ChartMove) -> dict[Held | str, Term]:
         """The terms known before a move, each by its fact or invariant."""
-        place = move.before
-        if place is None:
+        position = move.before
+        if position is None:
             return {}
-        known: dict[Held | str, Term] = {held: self.fact(held) for held in self.facts_at(place)}
-        return known | {name: self.refuted(name, place) for name in self.bad}
+        known: dict[Held | str, Term] = {held: self.fact(held) for held in self.facts_at(position)}
+        return known | {name: self.refuted(name, position) for name in self.bad}
 
     def after(self, move: ChartMove) -> dict[Held | str, Term]:
         """The terms that must hold after a move, each by its fact or invariant."""
@@ -266,9 +267,9 @@ class _Search:
             wanted[name] = self.behind(move, name, self.refuted(name, move.after))
         return wanted
 
-    def facts_at(self, place: Position) -> Iterator[Held]:
+    def facts_at(self, position: Position) -> Iterator[Held]:
         """The pairs of vertex and data item that facts can be about in a position."""
-        for vertex in filter(self.is_marked, place.vertices):
+        for vertex in filter(self.is_marked, position.vertices):
             for name in self.cells:
                 yield vertex, name
 
@@ -277,14 +278,14 @@ class _Search:
         name, cells = held[1], self.allowed[held]
         return self.once((held, len(cells)), lambda: self.in_cells(name, self.symbol(name), cells))
 
-    def refuted(self, name: str, place: Position) -> Term:
+    def refuted(self, name: str, position: Position) -> Term:
         """That a position does not violate an invariant."""
-        return self.once((place, name), lambda: z3.Not(self.violated(name, place)))
+        return self.once((position, name), lambda: z3.Not(self.violated(name, position)))
 
-    def behind(self, move: ChartMove, claim: object, term: Term) -> Term:
-        """That the term of a claim holds after a move."""
+    def behind(self, move: ChartMove, statement: object, term: Term) -> Term:
+        """That the term of a statement holds after a move."""
         return self.once(
-            (move, claim), lambda: z3.simplify(z3.substitute(term, *self.written(move)))
+            (move, statement), lambda: z3.simplify(z3.substitute(term, *self.written(move)))
         )
 
     def typed(self) -> list[Term]:
@@ -349,9 +350,9 @@ class _Search:
                 symbol = self.symbol(name)
                 value = model.eval(pairs.get(symbol.get_id(), symbol), model_completion=True)
                 self.allowed[vertex, name].add(self.cell_of(name, value))
-        for claim, kept in self.after(move).items():
-            if isinstance(claim, str) and z3.is_false(model.eval(kept, model_completion=True)):
-                del self.bad[claim]
+        for statement, kept in self.after(move).items():
+            if isinstance(statement, str) and z3.is_false(model.eval(kept, model_completion=True)):
+                del self.bad[statement]
         if self.weight() == before:
             raise TooManyQuestions
         return True
@@ -381,7 +382,7 @@ class _Search:
 
     def pairs(self) -> Iterator[tuple[ChartMove, ChartMove]]:
         """Each move of `alone`, with each move of an earlier region from the same position."""
-        lanes = self.region.lanes()
+        regions = self.region.concurrent_regions()
         at: dict[Position, list[ChartMove]] = {}
         for move in self.moves:
             if move.before is not None and move.path and not move.before.passing:
@@ -389,10 +390,10 @@ class _Search:
         for moves in at.values():
             for move in moves:
                 if move.path[0].name in self.alone:
-                    own = lanes.index(self.region.lane(move.path[0].source))
+                    own = regions.index(self.region.concurrent_region(move.path[0].source))
                     for other in moves:
-                        before = lanes.index(self.region.lane(other.path[0].source)) < own
-                        if before and _occur_together(move.path[0], other.path[0]):
+                        theirs = regions.index(self.region.concurrent_region(other.path[0].source))
+                        if theirs < own and _occur_together(move.path[0], other.path[0]):
                             yield move, other
 
     def both(self, move: ChartMove, other: ChartMove, typed: list[Term]) -> list[Term]:
@@ -407,9 +408,9 @@ class _Search:
         waiting: list[Held | str] = list(self.bad)
         typed = self.typed()
         while waiting:
-            claim = waiting.pop(0)
+            statement = waiting.pop(0)
             for move in self.moves:
-                more = self.reasons(move, claim, typed, needed) - needed
+                more = self.reasons(move, statement, typed, needed) - needed
                 needed |= more
                 waiting += sorted(more, key=str)
             if not waiting:
@@ -423,10 +424,10 @@ class _Search:
             yield Fact(vertex, name[1], name[2], tuple(spans))
 
     def reasons(
-        self, move: ChartMove, claim: Held | str, typed: list[Term], needed: set[Held]
+        self, move: ChartMove, statement: Held | str, typed: list[Term], needed: set[Held]
     ) -> set[Held]:
-        """The facts from which it follows that a move keeps a claim."""
-        wanted = self.after(move).get(claim)
+        """The facts from which it follows that a move keeps a statement."""
+        wanted = self.after(move).get(statement)
         if wanted is None or z3.is_true(wanted):
             return set()
         return self.core(move, [*typed, move.condition, z3.Not(wanted)], needed)

@@ -24,7 +24,7 @@ from ravenchart.gen.model.statechart import PseudoKind, Segment, Transition, Whe
 from .logic import Questions, Read, Term, Variable, term
 from .stepping import Configuration, OpenStep, TransitionPath
 
-MOST_PLACES = 300
+MOST_POSITIONS = 300
 """A region with more configurations is not explored."""
 MOST_MOVES = 6_000
 """A region with more moves is not explored."""
@@ -74,14 +74,14 @@ def moves_of(tree: ChartTree, symbols: Read, alone: Container[str]) -> Iterator[
     yield begun
     waiting, seen, made = [begun.after], {begun.after}, 0
     while waiting:
-        place = waiting.pop(0)
-        for move in _from(tree, place, questions, alone):
+        position = waiting.pop(0)
+        for move in _from(tree, position, questions, alone):
             made += 1
             if made > MOST_MOVES:
                 raise TooManyMoves
             yield move
             if move.after not in seen:
-                if len(seen) == MOST_PLACES:
+                if len(seen) == MOST_POSITIONS:
                     raise TooManyMoves
                 seen.add(move.after)
                 waiting.append(move.after)
@@ -109,8 +109,8 @@ class _Mover(OpenStep):
 
     def move(self, before: Position | None, condition: Term, path: TransitionPath) -> ChartMove:
         """The move made so far."""
-        place = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
-        return ChartMove(before, condition, self.store, place, path)
+        position = Position(self.tree.ordered(self.active), tuple(sorted(self.arrivals)))
+        return ChartMove(before, condition, self.store, position, path)
 
     def _recalled(self, slot: RegionKey) -> str | None:
         self.asked.append(slot)
@@ -120,51 +120,54 @@ class _Mover(OpenStep):
 
 
 def _mover(
-    tree: ChartTree, place: Position, questions: Questions, remembered: tuple[str | None, ...] = ()
+    tree: ChartTree,
+    position: Position,
+    questions: Questions,
+    remembered: tuple[str | None, ...] = (),
 ) -> _Mover:
     made = _Mover(
         tree,
-        Configuration(place.active),
+        Configuration(position.active),
         START,
         questions,
         lambda condition: True,
         remembered=list(remembered),
     )
-    made.arrivals = list(place.passing)
+    made.arrivals = list(position.passing)
     return made
 
 
 def _from(
-    tree: ChartTree, place: Position, questions: Questions, alone: Container[str]
+    tree: ChartTree, position: Position, questions: Questions, alone: Container[str]
 ) -> Iterator[ChartMove]:
-    if place.passing:
-        yield from _passed(tree, place, questions)
+    if position.passing:
+        yield from _passed(tree, position, questions)
         return
-    for name in place.active:
-        known = knows_guards(tree.region, tree.lane_of[name])
+    for name in position.active:
+        known = knows_guards(tree.region, tree.region.concurrent_region(name))
         for transition in tree.outgoing[name]:
             if not isinstance(transition.trigger, Segment):
                 sure = known or transition.name in alone
-                for path in _ways(tree, place, transition):
-                    yield _fired(tree, place, questions, path, known=sure)
+                for path in _ways(tree, position, transition):
+                    yield _fired(tree, position, questions, path, known=sure)
 
 
-def _passed(tree: ChartTree, place: Position, questions: Questions) -> Iterator[ChartMove]:
+def _passed(tree: ChartTree, position: Position, questions: Questions) -> Iterator[ChartMove]:
     """The moves from the first pseudostate on the way."""
-    vertex = next(_mover(tree, place, questions).passing(TOP))
-    rest = Position(place.active, tuple(n for n in place.passing if n != vertex))
+    vertex = next(_mover(tree, position, questions).passing(TOP))
+    rest = Position(position.active, tuple(n for n in position.passing if n != vertex))
     if tree.kinds[vertex] is PseudoKind.CHOICE:
         for transition in tree.outgoing[vertex]:
-            for path in _ways(tree, place, transition):
+            for path in _ways(tree, position, transition):
                 fired = _fired(tree, rest, questions, path, known=True)
-                yield ChartMove(place, fired.condition, fired.updates, fired.after, fired.path)
+                yield ChartMove(position, fired.condition, fired.updates, fired.after, fired.path)
         return
     waiting: list[tuple[str | None, ...]] = [()]
     while waiting:
         remembered = waiting.pop()
-        mover = _mover(tree, place, questions, remembered)
+        mover = _mover(tree, position, questions, remembered)
         mover.go_on()
-        yield mover.move(place, z3.BoolVal(True), ())
+        yield mover.move(position, z3.BoolVal(True), ())
         for count in range(len(remembered), len(mover.asked)):
             unknown = (None,) * (count - len(remembered))
             leaves = _leaves(tree, mover.asked[count])
@@ -176,31 +179,31 @@ def _leaves(tree: ChartTree, slot: RegionKey) -> list[str]:
     return [
         name
         for name, state in tree.states.items()
-        if len(state.regions) != 1 and slot in tree.lane_slots(name) and tree.slots[name][0]
+        if len(state.regions) != 1 and slot in tree.inner_regions(name) and tree.slots[name].owner
     ]
 
 
-def _ways(tree: ChartTree, place: Position, transition: Transition) -> Iterator[TransitionPath]:
+def _ways(tree: ChartTree, position: Position, transition: Transition) -> Iterator[TransitionPath]:
     """A transition with each way through junctions; a join only where all sources are active."""
     kind = tree.kinds.get(transition.target)
     if kind is PseudoKind.JUNCTION:
         for out in tree.outgoing[transition.target]:
-            yield from ((transition, *rest) for rest in _ways(tree, place, out))
+            yield from ((transition, *rest) for rest in _ways(tree, position, out))
     elif kind is PseudoKind.JOIN:
         incoming = tree.incoming[transition.target]
-        if all(one.source in place.active for one in incoming):
+        if all(one.source in position.active for one in incoming):
             for out in tree.outgoing[transition.target]:
-                yield from ((*incoming, *rest) for rest in _ways(tree, place, out))
+                yield from ((*incoming, *rest) for rest in _ways(tree, position, out))
     else:
         yield (transition,)
 
 
 def _fired(
-    tree: ChartTree, place: Position, questions: Questions, path: TransitionPath, *, known: bool
+    tree: ChartTree, position: Position, questions: Questions, path: TransitionPath, *, known: bool
 ) -> ChartMove:
-    mover = _mover(tree, place, questions)
+    mover = _mover(tree, position, questions)
     mover.fire(path)
-    return mover.move(place, guard_of(path, questions.read) if known else z3.BoolVal(True), path)
+    return mover.move(position, guard_of(path, questions.read) if known else z3.BoolVal(True), path)
 
 
 def guard_of(path: TransitionPath, symbols: Read) -> Term:

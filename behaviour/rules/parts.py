@@ -24,7 +24,6 @@ from dataclasses import dataclass, field, replace
 
 from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Flow, Reading, ScalarType, Set
-from ravenchart.gen.model.statechart import Lane
 
 from . import logic
 from .cells import every
@@ -54,7 +53,7 @@ class RegionParts:
         default_factory=dict
     )
     """Steps that leave an orthogonal state from inside: the part, the occurrence, the state."""
-    _contested: dict[frozenset[Lane], dict[Variable, Term]] = field(default_factory=dict)
+    _contested: dict[frozenset[RegionKey], dict[Variable, Term]] = field(default_factory=dict)
 
     def clear(self) -> None:
         """Forget what was seen."""
@@ -70,14 +69,15 @@ class RegionParts:
             yield at
             return
         for leaf in at.active:
-            if self.tree.fills_lane(leaf):
-                lane = self.tree.lane_of[leaf]
+            if self.tree.is_innermost(leaf):
+                region = self.tree.concurrent_region_of[leaf]
                 mine = self.tree.chains[leaf]
 
                 def kept(
-                    names: Sequence[str], own: Lane = lane, mine: Sequence[str] = mine
+                    names: Sequence[str], own: RegionKey = region, mine: Sequence[str] = mine
                 ) -> KeptParts:
-                    return tuple(n for n in names if n in mine and self.tree.lane_of[n] == own)
+                    around = self.tree.concurrent_region_of
+                    return tuple(n for n in names if n in mine and around[n] == own)
 
                 yield Configuration(
                     self.tree.ordered(mine), kept(at.completed), kept(at.pending), kept(at.done)
@@ -92,7 +92,7 @@ class RegionParts:
         leaf = self.leaf(part)
         self.seen.setdefault(leaf, []).append(part)
         slot = self.tree.slots[leaf]
-        owner = slot[0]
+        owner = slot.owner
         if leaf in self.tree.orthogonal:
             yield from self.completed(part)
         elif owner in self.tree.orthogonal and self.tree.states[leaf].final:
@@ -108,7 +108,7 @@ class RegionParts:
             return
         if state in self.tree.working and state not in part.done:
             return
-        if all((state, r.name) in self.final for r in self.tree.states[state].regions):
+        if all(region in self.final for region in self.tree.regions_of(state)):
             done = self.tree.ordered({*part.completed, state})
             yield replace(part, completed=done, pending=(*part.pending, state))
 
@@ -119,7 +119,8 @@ class RegionParts:
 
     def says(self, part: Configuration, state: str) -> bool:
         """Whether a part has the completion of an active state."""
-        return self.tree.lane_of[state] == self.tree.lane_of[self.leaf(part)]
+        around = self.tree.concurrent_region_of
+        return around[state] == around[self.leaf(part)]
 
     # --- regions that meet
 
@@ -166,39 +167,40 @@ class RegionParts:
 
     def contested(self, at: Configuration) -> dict[Variable, Term]:
         """The data that the other active regions may set, each with the unknown for it."""
-        present = frozenset(self.tree.lane_of[name] for name in at.active)
+        present = frozenset(self.tree.concurrent_region_of[name] for name in at.active)
         if present not in self._contested:
             absent = {
-                lane
-                for lane in self.tree.lanes
-                if lane not in present
-                and lane.owner is not None
-                and any(s in at.active for s in self.tree.chains[lane.owner])
+                region
+                for region in self.tree.concurrent_regions
+                if region not in present
+                and region.owner is not None
+                and any(s in at.active for s in self.tree.chains[region.owner])
             }
             self._contested[present] = {
                 name: logic.symbol(f"{name} in this step", self.types[name])
-                for name, lanes in self._writers().items()
-                if lanes & absent
+                for name, regions in self._writers().items()
+                if regions & absent
             }
         return self._contested[present]
 
-    def _writers(self) -> dict[Variable, set[Lane]]:
+    def _writers(self) -> dict[Variable, set[RegionKey]]:
         """The regions whose behaviours set each data item."""
-        found: dict[Variable, set[Lane]] = {}
-        for lane, flow in self._flows():
+        found: dict[Variable, set[RegionKey]] = {}
+        for own, flow in self._flows():
             for action in every(flow):
                 if isinstance(action, Set):
                     name = logic.variable(Reading.DATA, action.data, action.field)
-                    found.setdefault(name, set()).add(lane)
+                    found.setdefault(name, set()).add(own)
         return found
 
-    def _flows(self) -> Iterator[tuple[Lane, Flow]]:
+    def _flows(self) -> Iterator[tuple[RegionKey, Flow]]:
         tree, region = self.tree, self.tree.region
-        yield tree.lane_at(TOP), region.initial.effect
+        yield TOP, region.initial.effect
         for state in region.states:
-            yield tree.lane_of[state.name], state.entry
-            yield tree.lane_of[state.name], state.exit
+            yield tree.concurrent_region_of[state.name], state.entry
+            yield tree.concurrent_region_of[state.name], state.exit
             for nested in state.regions:
-                yield tree.lane_at((state.name, nested.name)), nested.initial.effect
+                key = RegionKey(state.name, nested.name)
+                yield tree.concurrent_region_around(key), nested.initial.effect
         for transition in region.transitions:
-            yield region.lane(transition.source), transition.effect
+            yield RegionKey(*region.concurrent_region(transition.source)), transition.effect

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 
 import z3
 
-from ravenchart.behaviour.tree import ChartTree
-from ravenchart.gen.model.statechart import Lane
+from ravenchart.behaviour.tree import ChartTree, RegionKey
 
 from .logic import Read, Term, Variable
 
@@ -25,31 +24,31 @@ def is_in_parts(
     tree: ChartTree, asked: Sequence[Variable], found: Sequence[tuple[str, ...]], read: Read
 ) -> Term:
     """The same for configurations that are known in parts: each orthogonal region is in one."""
-    return z3.And([_lane(tree, lane, asked, found, read) for lane in tree.lanes])
+    return z3.And([_of_region(tree, one, asked, found, read) for one in tree.concurrent_regions])
 
 
-def _lane(
+def _of_region(
     tree: ChartTree,
-    lane: Lane,
+    region: RegionKey,
     asked: Sequence[Variable],
     found: Sequence[tuple[str, ...]],
     read: Read,
 ) -> Term:
     """That a region and the states around it are as in one part, or that it is inactive."""
-    own = [name for name in asked if tree.lane_of[name.state] == lane]
+    own = [name for name in asked if tree.concurrent_region_of[name.state] == region]
     if not own:
         return z3.BoolVal(True)
-    around = tree.chains[lane.owner] if lane.owner is not None else ()
+    around = tree.chains[region.owner] if region.owner is not None else ()
     outer = [name for name in asked if name.state in around]
     cases = {
         tuple(name.state in active for name in (*own, *outer))
         for active in found
-        if any(tree.lane_of[state] == lane for state in active)
+        if any(tree.concurrent_region_of[state] == region for state in active)
     }
     ways = [_said([*own, *outer], case, read) for case in sorted(cases)]
-    if lane.owner is not None or tree.terminates:
+    if region.owner is not None or tree.terminates:
         #  a terminate may stop the chart while one region has no active state
-        without = [name for name in outer if name.state == lane.owner and not tree.terminates]
+        without = [name for name in outer if name.state == region.owner and not tree.terminates]
         ways.append(_said([*own, *without], (False,) * (len(own) + len(without)), read))
     return z3.Or(ways)
 

@@ -225,8 +225,8 @@ class Reachable:
                 for outcome in self._outcomes(thread, at, occurrence):
                     thread.remember(outcome)
                     for cells in self._successors(thread, node.cells, outcome, solver, context):
-                        for place in thread.places(outcome.after):
-                            edge = Edge(node, outcome, Situation(place, cells))
+                        for at_end in thread.explored(outcome.after):
+                            edge = Edge(node, outcome, Situation(at_end, cells))
                             waiting.extend(self._arrive(thread, edge))
                         if thread.parts is not None and only is None:
                             met = thread.parts.left(at, outcome)
@@ -244,9 +244,9 @@ class Reachable:
         thread.nodes[after] = edge
         yield after, after.configuration, None
         if thread.parts is not None and not after.configuration.stopped:
-            for place in thread.parts.see(after.configuration):
+            for part in thread.parts.see(after.configuration):
                 yield from self._arrive(
-                    thread, replace(edge, after=replace(after, configuration=place))
+                    thread, replace(edge, after=replace(after, configuration=part))
                 )
             for part, both, occurrence in thread.parts.meetings(after.configuration):
                 yield Situation(part, after.cells), both, occurrence

@@ -19,7 +19,7 @@ import z3
 
 from ravenchart.behaviour.tree import TOP, ChartTree, Occurrence, RegionKey
 from ravenchart.gen.language.terms import Expression, Flow, If, Raise, Reading, Set
-from ravenchart.gen.model.statechart import Lane, PseudoKind, Transition, TransitionKind, When
+from ravenchart.gen.model.statechart import PseudoKind, Transition, TransitionKind, When
 
 from .logic import Questions, Term, Variable, term, variable
 
@@ -185,11 +185,11 @@ class OpenStep:
         chosen: list[TransitionPath] = []
         deferring: list[str] = []
         busy: set[str] = set()
-        chains: dict[Lane, list[str]] = {}
+        chains: dict[RegionKey, list[str]] = {}
         for name in reversed(self.tree.ordered(self.active)):
-            chains.setdefault(self.tree.lane_of[name], []).append(name)
-        for lane in self.tree.lanes:
-            chain = chains.get(lane, [])
+            chains.setdefault(self.tree.concurrent_region_of[name], []).append(name)
+        for region in self.tree.concurrent_regions:
+            chain = chains.get(region, [])
             if any(name in busy for name in chain):
                 continue
             found = self.select_in(chain)
@@ -198,8 +198,8 @@ class OpenStep:
                 deferring.append(found.state)
             elif found is not None:
                 chosen.append(found)
-            if found is not None and lane.owner is not None:
-                busy |= set(self.tree.chains[lane.owner])
+            if found is not None and region.owner is not None:
+                busy |= set(self.tree.chains[region.owner])
         self.beaten += [
             Beaten(p[0].name, state, Defeat.DEFERRAL) for p in chosen for state in deferring
         ]
@@ -260,8 +260,8 @@ class OpenStep:
         """Whether a source of a join has completed; yes where its region is unknown."""
         if state in self.before.completed or self.contested is None:
             return state in self.before.completed
-        lane = self.tree.lane_of[state]
-        return all(self.tree.lane_of[name] != lane for name in self.before.active)
+        around = self.tree.concurrent_region_of
+        return all(around[name] != around[state] for name in self.before.active)
 
     # --- firing
 
@@ -360,8 +360,8 @@ class OpenStep:
         yield from (name for name in self.arrivals if self.tree.slots[name] == slot)
         for name in self.tree.ordered(self.active):
             if self.tree.slots[name] == slot:
-                for nested in self.tree.states[name].regions:
-                    yield from self.passing((name, nested.name))
+                for nested in self.tree.regions_of(name):
+                    yield from self.passing(nested)
 
     # --- exits and entries
 
@@ -370,8 +370,8 @@ class OpenStep:
         self.arrivals = [name for name in self.arrivals if self.tree.slots[name] != slot]
         for name in self.tree.ordered(self.active):
             if self.tree.slots[name] == slot:
-                for nested in self.tree.states[name].regions:
-                    self.leave((name, nested.name))
+                for nested in self.tree.regions_of(name):
+                    self.leave(nested)
                 self.remember(name)
                 self.perform(self.tree.states[name].exit)
                 self.active.discard(name)
@@ -383,7 +383,7 @@ class OpenStep:
         if len(state.regions) == 1:
             return
         own = self.tree.slots[name]
-        for slot in self.tree.lane_slots(name):
+        for slot in self.tree.inner_regions(name):
             if slot in self.tree.remembered:
                 self.history[slot] = state.parent if state.final and state.parent else name
         if state.final:
@@ -399,8 +399,7 @@ class OpenStep:
         segments = {}
         if fork is not None and not rest:
             segments = {self.tree.below(first, t.target): t for t in self.tree.outgoing[fork]}
-        for nested in self.tree.states[first].regions:
-            slot = (first, nested.name)
+        for slot in self.tree.regions_of(first):
             if rest and self.tree.slots[rest[0]] == slot:
                 self.enter(rest, fork)
             elif slot in segments:
@@ -446,8 +445,7 @@ class OpenStep:
         """Enter a path, and the regions beside and below it as they were last."""
         first, *rest = path
         self.step_into(first)
-        for nested in self.tree.states[first].regions:
-            slot = (first, nested.name)
+        for slot in self.tree.regions_of(first):
             last = self.last(slot) if self.tree.states[first].is_orthogonal else None
             if rest and self.tree.slots[rest[0]] == slot:
                 self.enter_deep(rest)

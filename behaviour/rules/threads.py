@@ -104,7 +104,7 @@ class Thread:
         self.known.clear()
         self.answers.clear()
 
-    def places(self, at: Configuration) -> Iterable[Configuration]:
+    def explored(self, at: Configuration) -> Iterable[Configuration]:
         """A configuration, or the parts of it that are explored."""
         return (at,) if self.parts is None else self.parts.of(at)
 

@@ -127,8 +127,8 @@ class TimedWay:
             type_ = self.search.reach.types[name]
             value = logic.said(model.eval(symbol, model_completion=True), type_)
             said = f"{value}({name[1]})" if name[0] == "port state" else f"{name} = {value}"
-            place = "then" if number == len(self.steps) else f"in step {number + 1}"
-            found.append(f"{said} {place}")
+            when = "then" if number == len(self.steps) else f"in step {number + 1}"
+            found.append(f"{said} {when}")
         return ", ".join(found)
 
     # --- executions without a step

@@ -109,12 +109,12 @@ def readers_through(system: System, instance: str, item: str) -> tuple[str, ...]
     """The rows that read a data item through a command: a published item, or a fallback."""
     found: list[str] = []
     for binding in system.bindings:
-        provider, stand_in = binding.provider, binding.need.stand_in
+        provider, fallback = binding.provider, binding.need.fallback
         if isinstance(provider, Server):
             if provider.instance == instance and published_by(binding) == item:
                 found += rows_of(system, binding)
-        elif provider is None and stand_in and binding.instance == instance:
-            found += rows_of(system, binding) if stand_in.item == item else ()
+        elif provider is None and fallback and binding.instance == instance:
+            found += rows_of(system, binding) if fallback.item == item else ()
     return tuple(found)
 
 

@@ -48,8 +48,8 @@ def flow_of(system: System) -> Flow:
                 flow[End(provider.instance, item)] += asking(system, binding)
             elif provider.interface.server is not None:
                 flow[End(binding.instance, need.name)].append(serving(provider))
-        elif provider is None and need.stand_in is not None:
-            flow[End(binding.instance, need.stand_in.item)] += asking(system, binding)
+        elif provider is None and need.fallback is not None:
+            flow[End(binding.instance, need.fallback.item)] += asking(system, binding)
     for connection in system.connections:
         flow[connection.source].append(connection.target)
     for message in (m for m in system.messages if not m.controls):

@@ -39,10 +39,10 @@ class _Chart:
 
     def __init__(self, form: Declared) -> None:
         self.form = form
-        self.lane_of = {leaf: kind for kind, leaves in form.leaves.items() for leaf in leaves}
-        self.component = {lane.component: lane.type for lane in form.lanes}
+        self.type_of = {leaf: kind for kind, leaves in form.leaves.items() for leaf in leaves}
+        self.component = {region.component: region.type for region in form.regions}
         self.sources = {name: self._sources(tests) for name, tests in form.conditions.items()}
-        self.inner = self._inner_lanes()
+        self.inner = self._inner_regions()
         self.shapes: dict[str, Shape] = {}
         self.bars: list[DrawnVertex] = []
         self.inside: dict[str, list[Label]] = {}
@@ -61,15 +61,15 @@ class _Chart:
 
     # --- states
 
-    def _inner_lanes(self) -> Mapping[str, tuple[str, ...]]:
+    def _inner_regions(self) -> Mapping[str, tuple[str, ...]]:
         """The types of the regions inside each leaf that a test of their leaves names first."""
         found: dict[str, dict[str, None]] = {}
         for tests in self.form.conditions.values():
             states = [s for s in map(self._tested, tests) if s is not None]
-            for (_, outer), (lane, _) in pairwise(states):
-                if lane != "Leaf":
-                    found.setdefault(outer, {})[lane] = None
-        return {state: tuple(lanes) for state, lanes in found.items()}
+            for (_, outer), (kind, _) in pairwise(states):
+                if kind != "Leaf":
+                    found.setdefault(outer, {})[kind] = None
+        return {state: tuple(kinds) for state, kinds in found.items()}
 
     def _area(self, name: str, within: str, initial: str | None) -> Area:
         """The vertices in the type of a region's leaves, or in a composite."""
@@ -91,14 +91,14 @@ class _Chart:
         if within in self.form.leaves:
             return self.form.leaves[within]
         one = next(c for c in self.form.composites if c.name == within)
-        leaves = self.form.leaves[self.lane_of[one.first]]
+        leaves = self.form.leaves[self.type_of[one.first]]
         return leaves[leaves.index(one.first) : leaves.index(one.last) + 1]
 
     def _leaf(self, name: str) -> DrawnVertex:
         areas = tuple(
-            self._area(lane.component.removeprefix("In_"), lane.type, lane.default)
-            for lane in self.form.lanes
-            if lane.type in self.inner.get(name, ())
+            self._area(region.component.removeprefix("In_"), region.type, region.default)
+            for region in self.form.regions
+            if region.type in self.inner.get(name, ())
         )
         shape = self.shapes.get(name, Shape.STATE)
         return DrawnVertex(name, shape, tuple(self.inside.get(name, ())), areas)
@@ -107,7 +107,7 @@ class _Chart:
 
     def _tested(self, condition: str) -> tuple[str, str] | None:
         """The type of leaves and the state that a condition asks for."""
-        test = re.fullmatch(r"(?:Leaf|Place\.(\w+)) (?:=|in) (?:\w+\.)?(\w+)", condition)
+        test = re.fullmatch(r"(?:Leaf|Configuration\.(\w+)) (?:=|in) (?:\w+\.)?(\w+)", condition)
         return None if test is None else (self.component.get(test[1] or "", "Leaf"), test[2])
 
     def _sources(self, conditions: tuple[str, ...]) -> tuple[str, ...]:
@@ -145,8 +145,8 @@ class _Chart:
             self.arrows.append(Arrow(source, target, label))
 
     def _is_around(self, state: str, others: list[str]) -> bool:
-        lanes = self.inner.get(state, ())
-        return any(self.lane_of.get(other) in lanes for other in others)
+        inside = self.inner.get(state, ())
+        return any(self.type_of.get(other) in inside for other in others)
 
     def _joined(self, name: str, sources: tuple[str, ...]) -> str:
         if len(sources) == 1:
@@ -166,7 +166,7 @@ class _Chart:
 def _leaves_of(move: str | Mapping[str, str]) -> tuple[str, ...]:
     """The leaves that a move gives, without those that stay as they were."""
     leaves = (move,) if isinstance(move, str) else move.values()
-    return tuple(leaf for leaf in leaves if not re.match(r"(?:Place|Leaf)\b", leaf))
+    return tuple(leaf for leaf in leaves if not re.match(r"(?:Configuration|Leaf)\b", leaf))
 
 
 def _short(leaf: str) -> str:

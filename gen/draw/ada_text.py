@@ -22,9 +22,10 @@ from lark.tree import Meta
 GRAMMAR = r"""
 enumeration: "type" NAME "is" "(" NAME ("," NAME)* ")"
 composite: "subtype" NAME "is" NAME "range" NAME ".." NAME
-lane: NAME ":" NAME ":=" NAME
-sources: _HEAD _profile _cases
-conditions: _HEAD _profile "(" NAME _group _AND_THEN _cases ")"
+region: NAME ":" NAME ":=" NAME
+sources: _HEAD _profile _cases _aspect?
+conditions: _HEAD _profile "(" NAME _group _AND_THEN _cases ")" _aspect?
+_aspect: "with" NAME
 _cases: "(" "case" NAME "is" condition ("," condition)* ")"
 moves: _HEAD _profile "(" "case" NAME "is" move ("," move)* ")"
 
@@ -67,7 +68,7 @@ class DeclaredComposite:
 
 
 @dataclass(frozen=True, slots=True)
-class DrawnLane:
+class DrawnRegion:
     """A component of the configuration: the type of its leaves, the leaf it starts with."""
 
     component: str
@@ -85,7 +86,7 @@ class Declared:
     title: str
     leaves: dict[str, tuple[str, ...]]
     composites: tuple[DeclaredComposite, ...]
-    lanes: tuple[DrawnLane, ...]
+    regions: tuple[DrawnRegion, ...]
     conditions: dict[str, tuple[str, ...]]
     moves: dict[str, str | Leaves]
 
@@ -110,9 +111,9 @@ class _Reader(Transformer[Token, object]):
         """A range of leaves."""
         return DeclaredComposite(*map(str, names))
 
-    def lane(self, _: Meta, names: Sequence[Token]) -> DrawnLane:
+    def region(self, _: Meta, names: Sequence[Token]) -> DrawnRegion:
         """A component of a configuration."""
-        return DrawnLane(*map(str, names))
+        return DrawnRegion(*map(str, names))
 
     def condition(self, _: Meta, parts: Sequence[str]) -> dict[str, tuple[str, ...]]:
         """Transitions and their conjuncts."""
@@ -152,12 +153,12 @@ def _rows(parts: Sequence[object]) -> dict[str, object]:
 
 _ENUMERATION = re.compile(r"type \w+ is \(")
 _COMPOSITE = re.compile(r"subtype \w+ is \w+ range")
-_LANE = re.compile(r"\w+ : \w+ := \w+$")
+_COMPONENT = re.compile(r"\w+ : \w+ := \w+$")
 _RECORD = re.compile(r"type \w+ is record ")
 _PARSER = Lark(
     GRAMMAR,
     parser="lalr",
-    start=["enumeration", "composite", "lane", "sources", "conditions", "moves"],
+    start=["enumeration", "composite", "region", "sources", "conditions", "moves"],
     propagate_positions=True,
 )
 
@@ -177,7 +178,7 @@ def declared(spec: str, component: str) -> Declared:
         ".".join(package[1].split(".")[-2:]),
         dict(_read("enumeration", part) for part in parts if _ENUMERATION.match(part)),
         tuple(_read("composite", part) for part in parts if _COMPOSITE.match(part)),
-        tuple(_read("lane", part) for part in parts if _LANE.match(part)),
+        tuple(_read("region", part) for part in parts if _COMPONENT.match(part)),
         {name: (*sources.get(name, ()), *said) for name, said in conditions.items()},
         moves,
     )

@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from ravenchart.gen.model.statechart import RegionId
+
 from .dot import (
     Attributes,
     Defaults,
@@ -28,7 +30,7 @@ from .dot import (
 )
 from .look import FONT, INK, LEFT, PAPER, ROOM, SHADES, SMALL
 from .order import Arrangement
-from .picture import Area, Arrow, DrawnVertex, Picture, RegionKey, Shape
+from .picture import Area, Arrow, DrawnVertex, Picture, Shape
 from .wrapping import wrapped
 
 BACKWARD = {"dir": "back", "arrowtail": "vee"}
@@ -68,7 +70,7 @@ class _Drawing:
         self.picture = picture
         self.reading = Arrangement(picture)
         self.vertex = {vertex.name: vertex for vertex, _ in picture.vertices()}
-        self.labels: dict[RegionKey, list[DotNode]] = {place: [] for place, _ in picture.areas()}
+        self.labels: dict[RegionId, list[DotNode]] = {region: [] for region, _ in picture.areas()}
         self.edges = [*self._defaults(), *self._arrows()]
 
     def items(self) -> Iterator[DotItem]:
@@ -89,10 +91,10 @@ class _Drawing:
 
     def _area(self, area: Area, owner: str | None, depth: int) -> Iterator[DotItem]:
         if area.initial is not None:
-            yield DotNode(_initial((owner, area.name)), _INITIAL)
+            yield DotNode(_initial(RegionId(owner, area.name)), _INITIAL)
         for vertex in sorted(area.vertices, key=lambda v: self.reading.position[v.name]):
             yield self._drawn(vertex, depth)
-        yield from self.labels[owner, area.name]
+        yield from self.labels[RegionId(owner, area.name)]
 
     def _drawn(self, vertex: DrawnVertex, depth: int) -> DotItem:
         if vertex.is_composite:
@@ -119,7 +121,7 @@ class _Drawing:
                 group = (Defaults("graph", frame), *parts)
                 inside.append(Group(cluster(f"{vertex.name} {area.name}"), group))
             if area.initial is not None:
-                first = _initial((vertex.name, area.name))
+                first = _initial(RegionId(vertex.name, area.name))
                 inside.append(DotEdge(header.name, first, {"style": "invis", "weight": "8"}))
         inside += self._foot(vertex)
         return Group(cluster(vertex.name), tuple(inside))
@@ -137,10 +139,10 @@ class _Drawing:
     # --- edges
 
     def _defaults(self) -> Iterator[DotEdge]:
-        for place, area in self.picture.areas():
+        for region, area in self.picture.areas():
             if area.initial is not None:
                 text = wrapped(area.effect)
-                yield from self._forward(_initial(place), area.initial, text, place)
+                yield from self._forward(_initial(region), area.initial, text, region)
 
     def _arrows(self) -> Iterator[DotEdge]:
         bundles: dict[tuple[str, str, bool], list[Arrow]] = {}
@@ -156,51 +158,51 @@ class _Drawing:
         inner = source in self.reading.chain(target)[1:]
         within = inner or target in self.reading.chain(source)
         if inner and local:
-            place = next(p for p in self.reading.places[target] if p[0] == source)
-            label = self._label(source, target, text, place)
+            region = next(r for r in self.reading.regions[target] if r.owner == source)
+            label = self._label(source, target, text, region)
             yield DotEdge(_header(source), label, {"arrowhead": "none"})
-            yield from self._edge(label, target, place)
+            yield from self._edge(label, target, region)
             return
-        place = self.reading.common(source, target)
+        region = self.reading.common(source, target)
         if within:
-            label = self._label(source, target, text, place)
-            yield from self._edge(source, label, place, arrowhead="none")
-            yield from self._edge(target, label, place, **BACKWARD)
+            label = self._label(source, target, text, region)
+            yield from self._edge(source, label, region, arrowhead="none")
+            yield from self._edge(target, label, region, **BACKWARD)
         elif not self.reading.is_back(source, target):
-            yield from self._forward(source, target, text, place)
+            yield from self._forward(source, target, text, region)
         elif text:
-            label = self._label(source, target, text, place)
-            yield from self._edge(target, label, place, **BACKWARD)
-            yield from self._edge(label, source, place, arrowhead="none")
+            label = self._label(source, target, text, region)
+            yield from self._edge(target, label, region, **BACKWARD)
+            yield from self._edge(label, source, region, arrowhead="none")
         else:
-            yield from self._edge(target, source, place, **BACKWARD)
+            yield from self._edge(target, source, region, **BACKWARD)
 
     def _forward(
-        self, source: str, target: str, text: tuple[str, ...], place: RegionKey
+        self, source: str, target: str, text: tuple[str, ...], region: RegionId
     ) -> Iterator[DotEdge]:
         if not text:
-            yield from self._edge(source, target, place)
+            yield from self._edge(source, target, region)
             return
-        label = self._label(source, target, text, place)
-        yield from self._edge(source, label, place, arrowhead="none")
-        yield from self._edge(label, target, place)
+        label = self._label(source, target, text, region)
+        yield from self._edge(source, label, region, arrowhead="none")
+        yield from self._edge(label, target, region)
 
-    def _label(self, source: str, target: str, text: tuple[str, ...], place: RegionKey) -> str:
-        """The node of a label, drawn in ``place``; its name. Without text, a bend of the line."""
-        name = f"{source} to {target}" + (" inside" if place[0] == source else "")
+    def _label(self, source: str, target: str, text: tuple[str, ...], region: RegionId) -> str:
+        """The node of a label, drawn in ``region``; its name. Without text, a bend of the line."""
+        name = f"{source} to {target}" + (" inside" if region.owner == source else "")
         look: Attributes = {"shape": "point", "width": "0.01"}
         if text:
             inside = f'<font point-size="{SMALL}">{_left(text)}</font>'
             table = '<table border="0" cellborder="0" cellspacing="0" cellpadding="2">'
             row = Html(f'{table}<tr><td align="left">{inside}</td></tr></table>')
             look = {"shape": "plain", "label": row}
-        self.labels[place].append(DotNode(name, look))
+        self.labels[region].append(DotNode(name, look))
         return name
 
-    def _edge(self, tail: str, head: str, place: RegionKey, **look: str) -> Iterator[DotEdge]:
+    def _edge(self, tail: str, head: str, region: RegionId, **look: str) -> Iterator[DotEdge]:
         """An edge between nodes or composite states, these clipped at their border.
 
-        A second edge, not seen, keeps the vertex of ``place`` around one end
+        A second edge, not seen, keeps the vertex of ``region`` around one end
         above that around the other.
         """
         attributes: Attributes = dict(look)
@@ -210,7 +212,7 @@ class _Drawing:
         if self._is_composite(head):
             attributes["lhead"], below = cluster(head), _header(head)
         yield DotEdge(above, below, attributes)
-        outer, lower = self._standing(tail, place), self._standing(head, place)
+        outer, lower = self._standing(tail, region), self._standing(head, region)
         if (outer, lower) != (tail, head):
             above = _foot(outer) if self._is_composite(outer) else outer
             below = _header(lower) if self._is_composite(lower) else lower
@@ -219,12 +221,12 @@ class _Drawing:
     def _is_composite(self, name: str) -> bool:
         return name in self.vertex and self.vertex[name].is_composite
 
-    def _standing(self, name: str, place: RegionKey) -> str:
-        """The node, or the state around it, that stands in ``place`` itself."""
+    def _standing(self, name: str, region: RegionId) -> str:
+        """The node, or the state around it, that stands in ``region`` itself."""
         if name not in self.vertex:
             return name
-        places = self.reading.places[name]
-        return self.reading.chain(name)[places.index(place)]
+        regions = self.reading.regions[name]
+        return self.reading.chain(name)[regions.index(region)]
 
 
 def _header(name: str) -> str:
@@ -235,8 +237,8 @@ def _foot(name: str) -> str:
     return f"foot {name}"
 
 
-def _initial(place: RegionKey) -> str:
-    return f"initial {place[0] or ''} {place[1]}"
+def _initial(region: RegionId) -> str:
+    return f"initial {region.owner or ''} {region.name}"
 
 
 def _left(lines: Iterable[str]) -> str:

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from ravenchart.gen.model.statechart import RegionId
+
 from .order import Arrangement
-from .picture import Area, Arrow, DrawnVertex, Picture, RegionKey, Shape
+from .picture import Area, Arrow, DrawnVertex, Picture, Shape
 
 _STEREOTYPES: Mapping[Shape, str] = {
     Shape.CHOICE: "choice",
@@ -70,7 +72,7 @@ class _Drawing:
 
     def __init__(self, picture: Picture) -> None:
         self.picture = picture
-        self.arrows: dict[RegionKey, list[Arrow]] = {place: [] for place, _ in picture.areas()}
+        self.arrows: dict[RegionId, list[Arrow]] = {region: [] for region, _ in picture.areas()}
         reading = Arrangement(picture)
         for arrow in picture.arrows:
             self.arrows[reading.common(arrow.source, arrow.target)].append(arrow)
@@ -85,7 +87,7 @@ class _Drawing:
         if area.initial is not None:
             yield f"[*] --> {_id(area.initial)}{_after_colon(area.effect.text)}"
         ends = {vertex.name for vertex in area.vertices if vertex.shape is Shape.FINAL}
-        for arrow in self.arrows[owner, area.name]:
+        for arrow in self.arrows[RegionId(owner, area.name)]:
             target = "[*]" if arrow.target in ends else _id(arrow.target)
             label = ("local: " if arrow.local else "") + arrow.label.text
             yield f"{_id(arrow.source)} --> {target}{_after_colon(label)}"

@@ -11,14 +11,16 @@ from __future__ import annotations
 
 import networkx as nx
 
-from .picture import Area, Picture, RegionKey
+from ravenchart.gen.model.statechart import RegionId
+
+from .picture import Area, Picture
 
 
 class Arrangement:
     """Where each vertex stands: what is around it, and its position in its area."""
 
     def __init__(self, picture: Picture) -> None:
-        self.places = {vertex.name: places for vertex, places in picture.vertices()}
+        self.regions = {vertex.name: around for vertex, around in picture.vertices()}
         self.follows = [
             pair
             for arrow in picture.arrows
@@ -29,13 +31,13 @@ class Arrangement:
             for index, name in enumerate(self._in_order(area)):
                 self.position[name] = index
 
-    def common(self, one: str, other: str) -> RegionKey:
+    def common(self, one: str, other: str) -> RegionId:
         """The innermost area around both."""
-        return next(place for place in self.places[one] if place in self.places[other])
+        return next(region for region in self.regions[one] if region in self.regions[other])
 
     def chain(self, name: str) -> tuple[str, ...]:
         """A vertex and the states around it, innermost first."""
-        return (name, *(owner for owner, _ in self.places[name] if owner is not None))
+        return (name, *(owner for owner, _ in self.regions[name] if owner is not None))
 
     def is_back(self, source: str, target: str) -> bool:
         """Does an arrow lead to what is read before its source?"""

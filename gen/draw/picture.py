@@ -15,12 +15,16 @@ from enum import Enum
 
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.component import Activity, Component, StateRef
-from ravenchart.gen.model.statechart import Initial, Region, State, Transition, TransitionKind
+from ravenchart.gen.model.statechart import (
+    Initial,
+    Region,
+    RegionId,
+    State,
+    Transition,
+    TransitionKind,
+)
 
 from . import words
-
-RegionKey = tuple[str | None, str]
-"""An area by its composite state (None: the top) and its name."""
 
 
 class Shape(Enum):
@@ -101,25 +105,25 @@ class Picture:
     area: Area
     arrows: tuple[Arrow, ...]
 
-    def vertices(self) -> Iterator[tuple[DrawnVertex, tuple[RegionKey, ...]]]:
-        """Every vertex, outer before inner, with where it stands, innermost first."""
+    def vertices(self) -> Iterator[tuple[DrawnVertex, tuple[RegionId, ...]]]:
+        """Every vertex, outer before inner, with the regions around it, innermost first."""
 
         def inside(
-            area: Area, owner: str | None, around: tuple[RegionKey, ...]
-        ) -> Iterator[tuple[DrawnVertex, tuple[RegionKey, ...]]]:
-            places = ((owner, area.name), *around)
+            area: Area, owner: str | None, around: tuple[RegionId, ...]
+        ) -> Iterator[tuple[DrawnVertex, tuple[RegionId, ...]]]:
+            regions = (RegionId(owner, area.name), *around)
             for vertex in area.vertices:
-                yield vertex, places
+                yield vertex, regions
                 for nested in vertex.areas:
-                    yield from inside(nested, vertex.name, places)
+                    yield from inside(nested, vertex.name, regions)
 
         return inside(self.area, None, ())
 
-    def areas(self) -> Iterator[tuple[RegionKey, Area]]:
+    def areas(self) -> Iterator[tuple[RegionId, Area]]:
         """Every area, outer before inner."""
-        yield (None, self.area.name), self.area
+        yield RegionId(None, self.area.name), self.area
         for vertex, _ in self.vertices():
-            yield from (((vertex.name, area.name), area) for area in vertex.areas)
+            yield from ((RegionId(vertex.name, area.name), area) for area in vertex.areas)
 
 
 # --- From the model --------------------------------------------------------------

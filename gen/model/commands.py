@@ -53,7 +53,7 @@ class Command:
 
 
 @dataclass(frozen=True, slots=True)
-class StandIn:
+class Fallback:
     """The fallback of a command: ``activity`` keeps the data item ``item`` up to date for it."""
 
     activity: str
@@ -72,7 +72,7 @@ class Need:
     argument: Type | None
     reply: Type | None
     optional: bool = False
-    stand_in: StandIn | None = None
+    fallback: Fallback | None = None
     on_reply: str | None = None
     on_full: str | None = None
     on_timeout: str | None = None

@@ -27,7 +27,7 @@ from ravenchart.gen.language.terms import (
 )
 
 from .component import Component
-from .statechart import Lane, Region
+from .statechart import Region, RegionId
 
 ValueRange = tuple[int, int]
 """First and last value; literals of an enumeration count by their position."""
@@ -70,21 +70,21 @@ def _record(of_type: Type) -> RecordType:
     return of_type
 
 
-def knows_guards(region: Region, lane: Lane) -> bool:
+def knows_guards(chart: Region, region: RegionId) -> bool:
     """Whether the guards of a region's transitions hold when these are taken.
 
     All guards of a step are read before any transition is taken. They still hold where none was
     taken before in the same step. That is so in the first region, and in one whose transitions
     are taken only when none is in the regions before it, which are inside it.
     """
-    before = region.lanes()[: region.lanes().index(lane)]
-    return all(_is_inside(region, one, lane) for one in before)
+    regions = chart.concurrent_regions()
+    return all(_is_inside(chart, one, region) for one in regions[: regions.index(region)])
 
 
-def _is_inside(region: Region, lane: Lane, outer: Lane) -> bool:
-    while lane.owner is not None:
-        lane = region.lane(lane.owner)
-        if lane == outer:
+def _is_inside(chart: Region, region: RegionId, outer: RegionId) -> bool:
+    while region.owner is not None:
+        region = chart.concurrent_region(region.owner)
+        if region == outer:
             return True
     return False
 

@@ -4,10 +4,10 @@
 """Statecharts as the model holds them: vertices, transitions and their tree.
 
 A top-level region is a tree: a composite state has one nested region, an orthogonal one
-several. Leaf states and pseudostates are its leaves. A `Lane` is the top-level region, or a
-region of an orthogonal state, as far as no other begins inside it. While such a region is
-active, exactly one of its leaves is; an orthogonal state is a leaf of the one that it stands
-in. Terms are those of UML 2.5.1, clause 14.
+several. Leaf states and pseudostates are its leaves. The concurrent regions are the top-level
+one and those of orthogonal states. Each reaches as far as no other begins inside it. While a
+concurrent region is active, exactly one of its leaves is; an orthogonal state is a leaf of the
+one that it stands in. Terms are those of UML 2.5.1, clause 14.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 from ravenchart.gen.language.terms import Expression, Flow, Ns, named
 from ravenchart.gen.origins import Origin
@@ -25,6 +26,22 @@ DONE = "done"
 
 RAISED_PER_STEP = 16
 """Events that one step of a region raises at most."""
+
+
+class RegionId(NamedTuple):
+    """A region inside a chart, by the state that it belongs to and its own name."""
+
+    owner: str | None
+    name: str
+
+    @property
+    def label(self) -> str:
+        """Its name, or that of its state where it has none."""
+        return self.name or self.owner or ""
+
+
+TOP = RegionId(None, "")
+"""The top-level region of any chart."""
 
 
 class Overflow(Enum):
@@ -86,6 +103,11 @@ class State:
     def is_orthogonal(self) -> bool:
         """More regions than one."""
         return len(self.regions) > 1
+
+    @property
+    def region_ids(self) -> tuple[RegionId, ...]:
+        """The identities of its regions, in model order."""
+        return tuple(RegionId(self.name, region.name) for region in self.regions)
 
     def nested(self, region: str) -> NestedRegion:
         """Its region called ``region``; KeyError where there is none."""
@@ -184,14 +206,6 @@ class Transition:
     otherwise: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """A region of the orthogonal state ``owner``, or the top-level region, with ``owner`` None."""
-
-    name: str
-    owner: str | None
-
-
 @dataclass(frozen=True)
 class Region:
     """A top-level region. ``states`` stand in tree order: parent first, then its children.
@@ -220,7 +234,7 @@ class Region:
     """Deferred events that wait at most; one more is lost and counted."""
 
     def __hash__(self) -> int:
-        """Quick: the place of a region tells it apart from most others."""
+        """Quick: name and location tell a region apart from most others."""
         return hash((self.name, self.origin))
 
     # --- vertices
@@ -271,54 +285,55 @@ class Region:
     def default_leaf(self, name: str) -> str:
         """The leaf that default entry of ``name`` leads to; an orthogonal state is one itself."""
         regions = self.state(name).regions
-        return name if len(regions) != 1 else self.default_of(name, regions[0].name)
+        return name if len(regions) != 1 else self.default_of(RegionId(name, regions[0].name))
 
-    def default_of(self, owner: str | None, region: str = "") -> str:
-        """The leaf that default entry of a region leads to; ``owner`` None: the top-level region.
+    def default_of(self, region: RegionId) -> str:
+        """The leaf that default entry of a region leads to.
 
         An orthogonal state on the way to the initial target is that leaf.
         """
-        initial = self.initial if owner is None else self.state(owner).nested(region).initial
+        owner = region.owner
+        initial = self.initial if owner is None else self.state(owner).nested(region.name).initial
         chain = self.ancestors(initial.target)
         entered = chain if owner is None else chain[: chain.index(owner)]
         stop = next((name for name in reversed(entered) if self.state(name).is_orthogonal), None)
         return stop or self.default_leaf(initial.target)
 
-    # --- top-level and orthogonal regions
+    # --- concurrent regions
 
-    def lanes(self) -> tuple[Lane, ...]:
+    def concurrent_regions(self) -> tuple[RegionId, ...]:
         """The orthogonal regions in model order, inner before outer; last the top-level region."""
-        found: list[Lane] = []
+        found: list[RegionId] = []
 
-        def inside(owner: str | None, region: str) -> None:
-            for state in self.children(owner, region):
-                for nested in state.regions:
-                    inside(state.name, nested.name)
+        def inside(region: RegionId) -> None:
+            for state in self.children(*region):
+                for nested in state.region_ids:
+                    inside(nested)
                     if state.is_orthogonal:
-                        found.append(Lane(nested.name, state.name))
+                        found.append(nested)
 
-        inside(None, "")
-        return (*found, Lane(self.name, None))
+        inside(TOP)
+        return (*found, TOP)
 
-    def lane(self, vertex: str) -> Lane:
+    def concurrent_region(self, vertex: str) -> RegionId:
         """The innermost top-level or orthogonal region around a state or pseudostate."""
-        return self._lanes[vertex.lower()]
+        return self._concurrent[vertex.lower()]
 
     @cached_property
-    def _lanes(self) -> dict[str, Lane]:
+    def _concurrent(self) -> dict[str, RegionId]:
         names = [*(s.name for s in self.states), *(p.name for p in self.pseudostates)]
-        return {name.lower(): self._lane_of(name) for name in names}
+        return {name.lower(): self._concurrent_around(name) for name in names}
 
-    def _lane_of(self, vertex: str) -> Lane:
+    def _concurrent_around(self, vertex: str) -> RegionId:
         at: str | None = vertex
         while at is not None:
             pseudo = self.pseudostate(at)
             parent = self.parent(at)
             region = self.state(at).region if pseudo is None else pseudo.region
             if parent is not None and self.state(parent).is_orthogonal:
-                return Lane(region, parent)
+                return RegionId(parent, region)
             at = parent
-        return Lane(self.name, None)
+        return TOP
 
     # --- transitions and events
 

@@ -278,9 +278,9 @@ def _parts(device: Device) -> tuple[Device, ...]:
 def _pruned(component: Component, bindings: Iterable[Binding]) -> Component:
     """A component as an instance has it: without the fallbacks that no binding needs."""
     idle = {
-        b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is not None
+        b.need.fallback.activity for b in bindings if b.need.fallback and b.provider is not None
     }
-    idle -= {b.need.stand_in.activity for b in bindings if b.need.stand_in and b.provider is None}
+    idle -= {b.need.fallback.activity for b in bindings if b.need.fallback and b.provider is None}
     gone = {item for a in component.activities if a.name in idle for item in a.writes}
     return replace(
         component,

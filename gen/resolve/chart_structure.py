@@ -222,13 +222,13 @@ def _listed(names: list[str]) -> str:
 
 
 def _history(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
-    place = tree.place(pseudo.name)
-    if place.owner is None:
+    region = tree.region_of(pseudo.name)
+    if region.owner is None:
         message = f"the {shown(pseudo)} stands in a top-level region, which is never left"
         hint = "move it into the `states` of the composite state that shall be restored"
         yield error("RV-0521", pseudo.origin, message, hint=hint)
     same = (p for p in tree.region.pseudostates if p.kind is pseudo.kind)
-    first = next(p for p in same if tree.place(p.name) == place)
+    first = next(p for p in same if tree.region_of(p.name) == region)
     if first is not pseudo:
         message = f"a second {PSEUDO_WORDS[pseudo.kind]} stands beside {first.name}"
         notes = [(first.origin, "the first is here")]
@@ -241,7 +241,7 @@ def _history(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
         hint = "one transition at most, taken when nothing is recorded, leaves a history"
         yield error("RV-0521", second.origin, message, notes=notes, hint=hint)
     for transition in leaving:
-        if transition.target not in tree.states or tree.child(place, transition.target) is None:
+        if transition.target not in tree.states or tree.child(region, transition.target) is None:
             message = (
                 f"{transition.name} leads from the {shown(pseudo)} to {transition.target}, which "
                 "is no state beside it or inside one"

@@ -29,7 +29,7 @@ from .chart_structure import structure_errors
 from .charts import region_of
 from .contracts import contract_of, sent
 from .flows import Targets, Use, called_command, flow_of
-from .interfaces import heard_of, needs_of, provided_of, servers_serve_once, stand_ins_agree
+from .interfaces import fallbacks_agree, heard_of, needs_of, provided_of, servers_serve_once
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .vocabulary import Vocabulary
 
@@ -139,7 +139,7 @@ def parts_of(
         hears=hears,
     )
     if findings.count() == before:
-        stand_ins_agree(form, component, findings)
+        fallbacks_agree(form, component, findings)
         servers_serve_once(component, findings)
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"

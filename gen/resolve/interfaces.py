@@ -14,12 +14,12 @@ from ravenchart.gen.language.terms import BOOLEAN, Field, RecordType, Type, defa
 from ravenchart.gen.model.commands import (
     Command,
     CommandKind,
+    Fallback,
     InterfaceEvent,
     Need,
     Provided,
     Published,
     Request,
-    StandIn,
 )
 from ravenchart.gen.model.component import Activity, Component, Data, Direction, Event, Port
 from ravenchart.gen.origins import Origin
@@ -160,9 +160,9 @@ def _need(
         return Need(command.name, origin, interface, axes, command, argument, reply)
     before = space.findings.count()
     is_read = command.kind is CommandKind.READ
-    stand_in = None
+    fallback = None
     if form.else_ is not None:
-        stand_in = _stand_in(command, form, reply, members, space.findings)
+        fallback = _fallback(command, form, reply, members, space.findings)
     events: dict[str, Event | None] = {}
     for key, text in (
         ("on_reply", form.on_reply),
@@ -191,7 +191,7 @@ def _need(
         argument,
         reply,
         optional=form.else_ is not None,
-        stand_in=stand_in,
+        fallback=fallback,
         on_reply=raised["on_reply"],
         on_full=raised["on_full"],
         on_timeout=raised["on_timeout"],
@@ -215,13 +215,13 @@ def _check_carried(
     findings.error("RV-0528", form.at(key), message, hint=hint)
 
 
-def _stand_in(
+def _fallback(
     command: Command,
     form: NeedForm,
     reply: Type | None,
     members: Members,
     findings: Findings,
-) -> StandIn | None:
+) -> Fallback | None:
     """The activity and item that `else` names; None for `nothing`, or when it is wrong."""
     text, at = form.else_ or "", form.at("else")
     is_read = command.kind is CommandKind.READ
@@ -252,7 +252,7 @@ def _stand_in(
         message = f"{data.name} is of type {data.type.name}, but {command.name} gives {expected}"
         notes = [(data.origin, f"`{data.name}` is declared here")]
         findings.error("RV-1207", at, message, notes=notes, hint=f"make it `type: {expected}`")
-    return StandIn(activity, data.name)
+    return Fallback(activity, data.name)
 
 
 def _declare(
@@ -284,10 +284,10 @@ def _declare(
             members.data.declare(item, origin, last)
 
 
-def stand_ins_agree(form: ComponentForm, component: Component, findings: Findings) -> None:
+def fallbacks_agree(form: ComponentForm, component: Component, findings: Findings) -> None:
     """The named activity writes the item of a fallback, and does nothing else for others."""
     for need in component.needs:
-        if need.stand_in is None:
+        if need.fallback is None:
             continue
         at = _else_at((form.requires or {})[need.interface], need.name)
         activities: NameScope[Activity] = NameScope("activity", open=form.lost("activities"))
@@ -295,10 +295,10 @@ def stand_ins_agree(form: ComponentForm, component: Component, findings: Finding
             activities.declare(one.name, one.origin, one)
         for gone in form.dropped("activities"):
             activities.declare(gone, None, None)
-        activity = activities.look_up(need.stand_in.activity, at, findings)
+        activity = activities.look_up(need.fallback.activity, at, findings)
         if activity is None:
             continue
-        own, item = activity.name, need.stand_in.item
+        own, item = activity.name, need.fallback.item
         notes = [(activity.origin, f"{own} is declared here")]
         if item not in activity.writes:
             message = f"{own} does not write {item}"

@@ -103,9 +103,9 @@ def _endless(
     if not _ends(component, region, state):
         name = _working_in(component, region, state)[0].name
         return f"its do activity {name} never raises `{DONE}`", f"let {name} raise `{DONE}`"
-    for place in tree.regions(state):
-        if not any(inner.final for inner in tree.content.get(place, ())):
-            where = f"its region {place.region}" if place.region else state
+    for nested in tree.regions(state):
+        if not any(inner.final for inner in tree.content.get(nested, ())):
+            where = f"its region {nested.name}" if nested.name else state
             return f"{where} has no final state", "add one: `Name: {kind: final}`"
     return None
 
@@ -130,16 +130,16 @@ def completions_can_come(component: Component, resolved: Resolved) -> Iterator[D
         yield from _incomplete(component, region)
     regions = {region.name: region for region in sound_regions(component, resolved)}
     for activity in component.activities:
-        place = activity.while_in
-        if place is None or DONE not in activity.raises or place.region not in regions:
+        waits = activity.while_in
+        if waits is None or DONE not in activity.raises or waits.region not in regions:
             continue
-        waiting = regions[place.region].outgoing(place.state)
+        waiting = regions[waits.region].outgoing(waits.state)
         if not any(isinstance(t.trigger, Completion) for t in waiting):
             message = f"{activity.name} raises `{DONE}`, but nothing waits for it"
             notes = [
                 (
-                    regions[place.region].state(place.state).origin,
-                    f"no completion transition leaves {place.state}",
+                    regions[waits.region].state(waits.state).origin,
+                    f"no completion transition leaves {waits.state}",
                 )
             ]
             yield warning("RV-0533", activity.origin, message, notes=notes)
@@ -255,8 +255,10 @@ def firings_agree(component: Component, resolved: Resolved) -> Iterator[Diagnost
         for transition in region.transitions:
             if isinstance(transition.trigger, OnEvent):
                 by_event[transition.trigger.event].append(transition)
-        lanes = region.lanes()
-        rank = {t.name: lanes.index(region.lane(t.source)) for t in region.transitions}
+        regions = region.concurrent_regions()
+        rank = {
+            t.name: regions.index(region.concurrent_region(t.source)) for t in region.transitions
+        }
         for event, transitions in by_event.items():
             for index, first in enumerate(transitions):
                 for second in transitions[index + 1 :]:

@@ -126,7 +126,7 @@ def parameters_and_data_are_used(component: Component, resolved: Resolved) -> It
     used = {name for item in component.runnables() for name in (*item.reads, *item.writes)}
     used |= set(conditions.reads)
     used |= {one.item for interface in component.provides for one in interface.published}
-    used |= {need.stand_in.item for need in component.needs if need.stand_in is not None}
+    used |= {need.fallback.item for need in component.needs if need.fallback is not None}
     hint = "remove it, or name it in a condition, a body or `reads`"
     for parameter in component.parameters:
         if parameter.name not in used:

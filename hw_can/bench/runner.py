@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from ravenchart import rounded
+
 from .axis import UM
 from .drives import AxisTrack, Bench, press
 from .peer import BenchError, FrameValues, Peer, Value
@@ -245,7 +247,7 @@ class _Runner:
                 self._tick()
         finally:
             self._bench.on_message = lambda name, values: None
-        return True, f"after {self._bench.now - began:.3f} s of {step.within:g} s"
+        return True, f"after {_took(self._bench.now - began)} of {step.within:g} s"
 
     def _in_place(self, step: Expect) -> tuple[bool, str]:
         passed, found = True, []
@@ -275,7 +277,7 @@ class _Runner:
                 slow_since = self._bench.now
         if slow_since is None:
             return False, f"still {drive.speed * 1e3:.1f} mm/s after {step.within:g} s"
-        return True, f"after {slow_since - began:.3f} s"
+        return True, f"after {_took(slow_since - began)}"
 
     def _until(self, look: Callable[[], tuple[bool, str]], within: float) -> tuple[bool, str]:
         began = self._bench.now
@@ -294,3 +296,8 @@ class _Runner:
         if self._limit is not None and self._bench.now > self._limit:
             raise _OutOfTimeError
         self._bench.tick()
+
+
+def _took(seconds: float) -> str:
+    """A measured time, with its unit."""
+    return rounded.up(rounded.of_seconds(seconds))

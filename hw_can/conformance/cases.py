@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import can
 
+from ravenchart import rounded
 from ravenchart.hw_can.bench.bus_records import FD_LENGTHS
 from ravenchart.hw_can.bench.peer import BenchError
 
@@ -300,7 +301,8 @@ def _timestamps(ends: Ends) -> str:
         raise Skipped("the interface gives no timestamps")
     if times != sorted(times):
         raise Failed("a frame is stamped earlier than the one before it")
-    return f"{len(times)} in rising order over {times[-1] - times[0]:.6f} s"
+    span = rounded.up(rounded.of_seconds(times[-1] - times[0]))
+    return f"{len(times)} in rising order over {span}"
 
 
 def _latency(ends: Ends) -> str:
@@ -315,12 +317,14 @@ def _latency(ends: Ends) -> str:
     in_order = sorted(ends.latencies)
     late = [number for number, one in enumerate(ends.latencies, 1) if one > LATEST]
     if late:
+        longest, limit = rounded.against(in_order[-1], LATEST)
         raise Failed(
-            f"{len(late)} of {PINGS} frames took longer than {LATEST // 1_000_000} ms, "
-            f"the longest {in_order[-1] // 1_000_000} ms, the first of them frame {late[0]}"
+            f"{len(late)} of {PINGS} frames took longer than {limit}, "
+            f"the longest {longest}, the first of them frame {late[0]}"
         )
     median, high = in_order[PINGS // 2], in_order[PINGS * 99 // 100]
-    return f"median {median // 1_000} us, 99 % {high // 1_000} us, max {in_order[-1] // 1_000} us"
+    longest = rounded.up(in_order[-1])
+    return f"median {rounded.up(median)}, 99 % {rounded.up(high)}, max {longest}"
 
 
 def _throughput(ends: Ends) -> str:

@@ -3,8 +3,8 @@
 
 --  A frame of a bus: a classic one or a CAN FD one.
 --
---  Guarantees   those of Can and of Fd_Frames; what only frames of the other
---               family have reads as 0
+--  Guarantees   those of Can and of Fd_Frames; a property that the family does
+--               not have reads as 0
 --  Tasking      none: frames are values
 --  Timing       constant; Words is linear in the room for data
 
@@ -25,12 +25,12 @@ is
       Fd     : Fd_Frames.Fd_Frame;
    end record;
    --  Plain is the frame of the classic family, Fd that of the flexible one;
-   --  the other means nothing. There is no discriminant, so that queues of
-   --  any element take it.
+   --  the other component has no meaning. There is no discriminant, so that
+   --  queues of any element take it.
 
    Null_Any_Frame : constant Any_Frame :=
      (others => <>);
-   --  Stands where there is no frame.
+   --  Fills a place without a frame.
 
    function To_Any (F : Frame) return Any_Frame
    is (Family => Classic, Plain => F, others => <>)
@@ -51,7 +51,7 @@ is
    function Fits (F : Any_Frame; Setting : Bus_Setting) return Boolean
    is (F.Family = Classic or else Setting.Takes_Fd)
    with Global => null;
-   --  Can it be on a bus that is configured so?
+   --  Can F be on a bus with this configuration?
 
    function Carries
      (F : Any_Frame; Family : Frame_Family; Length : Fd_Frames.Fd_Length)

@@ -8,7 +8,7 @@ is
    function Has_Tag
      (F : Any_Frames.Any_Frame; S : Setting; Tag : Tag_Bytes) return Boolean
    with Post => Has_Tag'Result = Shows_Tag (F, S, Tag);
-   --  Shows_Tag, in a time that does not depend on where the two differ.
+   --  Shows_Tag, in a time that does not depend on the first difference.
 
    --------------
    -- Input_Of --

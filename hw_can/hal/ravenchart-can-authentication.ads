@@ -1,24 +1,23 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Authentication of messages on CAN FD: at the end of the frame stand the
---  low bytes of a freshness value and the first bytes of a message
---  authentication code (MAC) over the data identifier, the data and the
---  whole freshness value. The receiver finds forged, altered and replayed
---  frames.
+--  Authentication of messages on CAN FD. A frame ends with the low bytes of a
+--  freshness value and the first bytes of a message authentication code (MAC)
+--  over the data identifier, the data and the whole freshness value. The
+--  receiver finds forged, altered and replayed frames.
 --
---  Guarantees   a sender never takes a freshness value twice; a frame is
+--  Guarantees   a sender never takes a freshness value twice. A frame is
 --               Verified only if it ends with the MAC of its data and of a
 --               value that is greater than all values verified before
 --  Tasking      none: one task owns each Freshness_State
 --  Timing       linear in the length of the frame; the comparison of MACs
---               takes the same time wherever they differ
---  Assumptions  the MAC is computed elsewhere: whoever cannot compute it does
---               not find a frame that is Verified
+--               takes the same time for equal and different ones
+--  Assumptions  the MAC is computed elsewhere: without the key, no sender
+--               finds a frame that is Verified
 --
 --  AUTOSAR FO PRS_SecOcProtocol: the data to authenticate, the truncation and
---  the reconstruction of the freshness value; without a header, one attempt
---  of verification for each frame.
+--  the reconstruction of the freshness value; without a header, one attempt of
+--  verification for each frame.
 
 with Interfaces;
 with Ravenchart.Can.Any_Frames;
@@ -35,7 +34,7 @@ is
    --  The number of a frame under its key and data identifier.
 
    subtype Freshness_Size is Positive range 1 .. 8;
-   --  Its bytes in the frame.
+   --  The number of its bytes in the frame.
 
    subtype Mac_Size is Positive range 3 .. 16;
    --  Bytes of the MAC in the frame.
@@ -56,9 +55,9 @@ is
    with Global => null;
    --  Bytes before the freshness value.
 
-   ----------------------
-   -- What is computed --
-   ----------------------
+   -----------------
+   -- Computation --
+   -----------------
 
    subtype Input_Size is Natural range 0 .. 70;
 
@@ -70,7 +69,7 @@ is
       Length : Input_Size := 0;
       Bytes  : Input_Bytes := (others => 0);
    end record;
-   --  What the MAC is computed of: the first Length bytes.
+   --  The input of the MAC: the first Length bytes.
 
    subtype Tag_Index is Natural range 0 .. 15;
 
@@ -80,12 +79,12 @@ is
       Is_Known : Boolean := False;
       Tag      : Tag_Bytes := (others => 0);
    end record;
-   --  A MAC, its most significant byte first, or that there is none: then
-   --  nothing is sent, and nothing that is received is used.
+   --  A MAC, its most significant byte first. When it is not known, no frame
+   --  is sent and no received frame is used.
 
-   -------------------
-   -- In the frame  --
-   -------------------
+   ------------------
+   -- In the frame --
+   ------------------
 
    function Is_Whole
      (F : Any_Frames.Any_Frame; S : Setting) return Boolean
@@ -122,7 +121,8 @@ is
        then Freshness (Any_Frames.Byte (F, S.Length - S.Mac_Bytes - 1 - K))
        else 0)
    with Global => null;
-   --  One byte of that in the frame; 0 for those that are not in it.
+   --  One byte of the freshness value in the frame; 0 for a byte that is not
+   --  there.
 
    function Shown
      (F : Any_Frames.Any_Frame; S : Setting) return Freshness
@@ -135,14 +135,15 @@ is
        or Interfaces.Shift_Left (Shown_Octet (F, S, 6), 48)
        or Interfaces.Shift_Left (Shown_Octet (F, S, 7), 56))
    with Global => null;
-   --  What the frame has of its freshness value, the highest byte first.
+   --  The part of the freshness value that the frame carries, highest byte
+   --  first.
 
    function Shows_Tag
      (F : Any_Frames.Any_Frame; S : Setting; Tag : Tag_Bytes) return Boolean
    is (for all I in 0 .. S.Mac_Bytes - 1 =>
          Any_Frames.Byte (F, S.Length - S.Mac_Bytes + I) = Tag (I))
    with Global => null;
-   --  Does it end with the first bytes of this MAC?
+   --  Does F end with the first bytes of this MAC?
 
    function Input_Of
      (F : Any_Frames.Any_Frame; S : Setting; Value : Freshness)
@@ -176,7 +177,7 @@ is
        and then Answer.Is_Known
        and then Shows_Tag (F, S, Answer.Tag))
    with Global => null;
-   --  Does it end with this freshness value and with this MAC?
+   --  Does F end with this freshness value and with this MAC?
 
    function Has_Same_Data
      (F, G : Any_Frames.Any_Frame; S : Setting) return Boolean
@@ -190,11 +191,11 @@ is
          (for all I in 0 .. Data_Length (S) - 1 =>
             Any_Frames.Byte (F, I) = Any_Frames.Byte (G, I)))
    with Ghost, Global => null;
-   --  Frames that differ behind their data alone.
+   --  Frames that differ only behind their data.
 
-   --------------------
-   -- What is known  --
-   --------------------
+   -----------
+   -- State --
+   -----------
 
    type Freshness_State is record
       Is_Started : Boolean := False;
@@ -209,7 +210,7 @@ is
        (if State'Old.Is_Started
         then State = State'Old
         else State = (True, Last));
-   --  Begin with the value after Last, unless it has begun.
+   --  Begin with the value after Last, unless State has begun already.
 
    -------------
    -- Sending --
@@ -229,7 +230,7 @@ is
          (if Taken
           then State.Last = State'Old.Last + 1
           else State = State'Old);
-   --  The value of the next frame. After the last one there is none more.
+   --  The value of the next frame. No value follows Freshness'Last.
 
    procedure Seal
      (F      : in out Any_Frames.Any_Frame;
@@ -243,7 +244,7 @@ is
        Is_Authentic (F, S, Value, Answer)
        and then Has_Same_Data (F'Old, F, S)
        and then Input_Of (F, S, Value) = Input_Of (F'Old, S, Value);
-   --  Write freshness value and MAC.
+   --  Write the freshness value and the MAC.
 
    ---------------
    -- Receiving --
@@ -251,11 +252,11 @@ is
 
    type Status is
      (Verified, Unverified, Malformed, Not_Fresh, No_Mac, Wrong_Mac);
-   --  Verified: the MAC is right, the value may be used. Unverified: fresh,
-   --  its MAC not compared yet. Malformed: wrong length or family.
-   --  Not_Fresh: no value that the frame may have is greater than the last
-   --  one. No_Mac: the MAC could not be computed. Wrong_Mac: another MAC than
-   --  that of the frame: it is altered, forged, or repeated.
+   --  Verified: the MAC is right, and the value may be used. Unverified:
+   --  fresh, its MAC not compared yet. Malformed: wrong length or family.
+   --  Not_Fresh: no possible value of the frame is greater than the last one.
+   --  No_Mac: the MAC could not be computed. Wrong_Mac: the MAC of the frame
+   --  differs: the frame is altered, forged, or repeated.
 
    procedure Reconstruct
      (State  : Freshness_State;
@@ -276,8 +277,9 @@ is
             and then Value - State.Last - 1 <= Mask (S)
           else Value = State.Last);
    --  The least value greater than the last one whose low bytes are those of
-   --  the frame: it follows the last one by 2 ** (8 * Freshness_Bytes) at
-   --  most. With all eight bytes in the frame it is what the frame says.
+   --  the frame: it follows the last one by at most 2 ** (8 *
+   --  Freshness_Bytes). With all eight bytes in the frame it is the value of
+   --  the frame.
 
    procedure Verify
      (State  : in out Freshness_State;
@@ -298,8 +300,8 @@ is
        and then State.Is_Started = State'Old.Is_Started
        and then
          State.Last = (if Result = Verified then Value else State.Last'Old);
-   --  Compare the MAC with that of the frame. Only a frame that is Verified
-   --  changes what is known.
+   --  Compare the MAC with that of the frame. Only a Verified frame changes
+   --  State.
 
    procedure Lemma_Least
      (State : Freshness_State;
@@ -317,7 +319,6 @@ is
        and then Other > State.Last
        and then (Other and Mask (S)) = Shown (F, S),
      Post   => Value <= Other;
-   --  No other value that the frame may have is less than the reconstructed
-   --  one.
+   --  No other possible value of the frame is less than the reconstructed one.
 
 end Ravenchart.Can.Authentication;

@@ -3,7 +3,7 @@
 
 --  Two halves, as drivers commonly have them: the upper one is the same for
 --  all drivers; the lower one is the driver, a subunit that the project file
---  chooses.
+--  selects.
 
 with Ravenchart.Can.Upper_Halves;
 
@@ -28,8 +28,8 @@ is
        Initializes    => State
    is
    end Driver;
-   --  Tasks that move frames between the upper half and a bus, and tell it
-   --  how the controller stands.
+   --  Tasks that move frames between the upper half and a bus, and report the
+   --  state of the controller to the upper half.
 
    package body Driver is separate;
 

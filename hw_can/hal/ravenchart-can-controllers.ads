@@ -1,21 +1,21 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A CAN controller. The subunit Driver of its body is a driver, chosen by the
---  project file.
+--  A CAN controller. The subunit Driver of its body is a driver that the
+--  project file selects.
 --
---  Guarantees   frames leave in the order sent, or where the driver's
---               transmit buffers are by priority the most urgent first, and
---               arrive in the order received; what does not fit is counted;
---               the log of faults has every change of state that the driver
---               is shown (docs/drivers.md), however short
+--  Guarantees   frames leave in the order sent, or the most urgent first where
+--               the driver's transmit buffers are by priority, and arrive in
+--               the order received. A frame that does not fit is counted. The
+--               log of faults has every change of state that the driver sees
+--               (docs/drivers.md), however short
 --  Tasking      Send, Read_State, Read_Faults, Read_Counters and
 --               Request_Recovery by any task up to Transmit_Ceiling; one
 --               caller of Wait_Frame, up to Receive_Ceiling
 --  Timing       constant; only Wait_Frame suspends
 --  Analysis     the driver's tasks at Driver_Priority, and shared objects
 --               at the two ceilings
---  Assumptions  those of the driver chosen
+--  Assumptions  those of the driver that is selected
 
 with System;
 with Ravenchart.Can.Any_Frames;
@@ -31,7 +31,7 @@ generic
    Transmit_Depth : Queueing.Capacity_Type;
    Receive_Depth : Queueing.Capacity_Type;
    Stack_Bytes : Positive;
-   --  Of each task of the driver.
+   --  The stack of each task of the driver.
    with function Accepts
      (Id : Identifier; Format : Frame_Format) return Boolean;
    --  The acceptance filter: frames it refuses are not received.
@@ -52,8 +52,7 @@ is
 
    Given_Priority : constant System.Priority := Driver_Priority;
    Given_Setting  : constant Bus_Setting := Setting;
-   --  The controller as it runs, for a timing certificate to be compared
-   --  with.
+   --  The controller as it runs, for comparison with a timing certificate.
 
    procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)
    with
@@ -64,23 +63,23 @@ is
    procedure Wait_Frame
      (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Global => (In_Out => (State, Wake_Up));
-   --  Suspend the one caller until a frame is there, and hand it over with
-   --  the time since Epochs.Start at which the driver had it, 0 before that.
+   --  Suspend the one caller until there is a frame, and hand it over with the
+   --  time since Epochs.Start at which the driver received it, 0 before that.
    --  Only frames that fit the setting come.
 
    procedure Read_State (Now : out Controller_State)
    with Global => (Input => State);
-   --  How the controller stands on the bus.
+   --  The state of the controller on the bus.
 
    procedure Read_Faults (Log : out Fault_Notices.Fault_Log)
    with Global => (Input => State);
-   --  How it stands, and how often it became error-passive and bus-off.
+   --  The state, and the number of entries into error-passive and bus-off.
 
    procedure Request_Recovery
    with Global => (In_Out => Wake_Up);
-   --  Ask a controller that is bus-off to recover, where Setting.Recovery is
-   --  On_Request. In any other state there is nothing to recover from, and
-   --  the request is forgotten; one that was made already is still the same.
+   --  Request recovery of a controller that is bus-off, where Setting.Recovery
+   --  is On_Request. In any other state there is nothing to recover from, and
+   --  the request is ignored; a repeated request changes nothing.
 
    procedure Read_Counters (C : out Counters)
    with Global => (Input => State);

@@ -39,7 +39,7 @@ is
    is (Interfaces.Shift_Left (R, 1)
        xor (if (R and 16#8000#) /= 0 then Polynomial (Kind) else 0))
    with Global => null;
-   --  The register after one bit more.
+   --  The register after one more bit.
 
    function After_Four (Kind : Crc_Kind; R : Register) return Register
    is (After_Bit
@@ -56,7 +56,7 @@ is
             (Kind,
              R xor Interfaces.Shift_Left (Interfaces.Unsigned_16 (Byte), 8))))
    with Global => null;
-   --  The register after one byte more, its highest bit first.
+   --  The register after one more byte, its highest bit first.
 
    function After_Bytes
      (Kind  : Crc_Kind;

@@ -1,23 +1,24 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Fault confinement as a node's model is notified of it: a log that the
---  driver keeps of its controller, and the notices between two looks at it.
+--  The faults of fault confinement as notified to a node's model: a log that
+--  the driver keeps of its controller, and the notices between two looks at
+--  the log.
 --
---  Guarantees   each entry into error-passive and bus-off is counted, and so
---               is each return to error-active behind one: no look misses
---               what came and went since the look before
+--  Guarantees   each entry into error-passive and bus-off is counted, and each
+--               return to error-active after it; so no look misses a short
+--               fault since the look before
 --  Tasking      none: values
 --  Timing       constant
 --
---  ISO 11898-1 (2015), fault confinement. Stopped is no state of it: a
+--  ISO 11898-1 (2015), fault confinement. Stopped is not one of its states: a
 --  controller without a bus has neither failed nor recovered.
 
 package Ravenchart.Can.Fault_Notices
   with SPARK_Mode, Pure
 is
    subtype Fault_State is Controller_State range Error_Passive .. Bus_Off;
-   --  The states that are a fault.
+   --  The states that are faults.
 
    type Fault_Log is record
       State           : Controller_State := Stopped;
@@ -39,7 +40,7 @@ is
       Bus_Off       : Boolean := False;
       Recovered     : Boolean := False;
    end record;
-   --  What a model is notified of, in this order.
+   --  The notices to a model, in this order.
 
    function Between (Before, After : Fault_Log) return Notices
    is (Error_Passive =>
@@ -55,9 +56,8 @@ is
          and then (Before.Disturbed
                    or else After.Returns > Before.Returns))
    with Global => null;
-   --  The notices of all that came between two looks. The last of them is
-   --  true when After is: Recovered stands only where the controller is
-   --  error-active.
+   --  The notices of all entries between two looks. The last of them is true
+   --  at After: Recovered only where the controller is error-active.
 
    function Noted
      (Log : Fault_Log; Now : Controller_State) return Fault_Log
@@ -88,7 +88,7 @@ is
             Bus_Off       =>
               Now = Can.Bus_Off and then Log.State /= Can.Bus_Off,
             Recovered     => Now = Error_Active and then Log.Disturbed);
-   --  The log of a controller that stands so now.
+   --  The log after the controller has entered this state.
 
    function Is_Later (Log, Seen : Fault_Log) return Boolean
    is (Log.Passive_Entries >= Seen.Passive_Entries
@@ -101,7 +101,7 @@ is
          (if Log.State = Bus_Off and then Seen.State /= Bus_Off
           then Log.Off_Entries > Seen.Off_Entries))
    with Ghost, Global => null;
-   --  Log is what Seen has become, while no count is at its last value.
+   --  Log is a later state of Seen, while no count is at its last value.
 
    function Can_Count (Log : Fault_Log) return Boolean
    is (Log.Passive_Entries < Event_Count'Last
@@ -130,11 +130,11 @@ is
        and then
          (if Between (Log, Noted (Log, Now)).Recovered
           then Between (Seen, Noted (Log, Now)).Recovered);
-   --  What the log notes after a look stays between that look and the next
-   --  one, whatever else is noted: by induction, no fault is missed.
+   --  A notice of the log after a look remains until the next look, whatever
+   --  is noted after it. By induction, no fault is missed.
 
    subtype Look_Count is Execution_Count range 1 .. Execution_Count'Last;
-   --  Looks that bus-off lasts before recovery is requested.
+   --  The number of looks in bus-off before recovery is requested.
 
    procedure Count_Off
      (Left   : in out Look_Count;
@@ -149,8 +149,8 @@ is
         then Left = Limit and then not Is_Due
         elsif Left'Old = 1 then Left = Limit and then Is_Due
         else Left = Left'Old - 1 and then not Is_Due);
-   --  One more look at a controller that recovers after a delay: is it to be
-   --  requested now? So it is Limit looks after the one that found bus-off,
-   --  and again after each Limit more.
+   --  One more look at a controller that recovers after a delay. Recovery is
+   --  due Limit looks after the one that found bus-off, and after each Limit
+   --  looks more.
 
 end Ravenchart.Can.Fault_Notices;

@@ -37,7 +37,7 @@ is
      Ghost,
      Pre  => Is_Made (F, Words) and then Ends_Here (F, Words, W),
      Post => Word (F, W) = Words (W);
-   --  Where the words end with the frame, none of their bits is cut off.
+   --  Where the words end with the frame, all their bits are kept.
 
    -------------------
    -- Lemma_No_Byte --
@@ -55,7 +55,7 @@ is
      Pre  => Is_Made (F, Words),
      Post =>
        (if Ends_Within (Words, F.Length) then Fd_Frames.Words (F) = Words);
-   --  The same of all words.
+   --  The same for all words.
 
    ---------------------
    -- Lemma_Same_Byte --

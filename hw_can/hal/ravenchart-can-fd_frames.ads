@@ -3,11 +3,11 @@
 
 --  CAN FD frames as values: up to 64 bytes, no remote frames.
 --
---  Guarantees   the identifier of an Fd_Frame fits its format, its length is
---               one that a length code stands for; Byte is 0 beyond it
+--  Guarantees   the identifier of an Fd_Frame fits its format, and its length
+--               has a length code; Byte is 0 beyond it
 --  Tasking      none: frames are values
---  Timing       constant; Fd_Data_Frame is linear in the room for data, Words
---               too
+--  Timing       constant; Fd_Data_Frame and Words are linear in the room for
+--               data
 
 with Interfaces;
 
@@ -36,7 +36,7 @@ is
          when 48     => 14,
          when 64     => 15)
    with Global => null;
-   --  The code that stands for Length.
+   --  The code of Length.
 
    function Length_Of (Code : Length_Code) return Fd_Length
    is (case Code is
@@ -51,7 +51,7 @@ is
    with
      Global => null,
      Post   => Fd_Frames.Code (Length_Of'Result) = Code;
-   --  The length that Code stands for.
+   --  The length with this code.
 
    subtype Fd_Index is Natural range 0 .. 63;
    --  Byte 0 goes over the bus first.
@@ -107,7 +107,7 @@ is
       Bytes  : Fd_Bytes := (others => 0);
    end record
    with Predicate => Fits (Id, Format);
-   --  Bytes beyond Length mean nothing: read by Byte.
+   --  Bytes beyond Length have no meaning: read the data by Byte.
 
    function Byte
      (F : Fd_Frame; Index : Fd_Index) return Interfaces.Unsigned_8
@@ -186,6 +186,6 @@ is
        and then
          (if Ends_Within (Words, Length)
           then Fd_Frames.Words (Fd_Data_Frame'Result) = Words);
-   --  The frame that carries Words; those beyond Length are not carried.
+   --  The frame that carries Words; words beyond Length are not carried.
 
 end Ravenchart.Can.Fd_Frames;

@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A value that comes in segments, between the reception of its bus, which
---  takes them, and the port region of its port, which sends flow control and
---  ends a transfer that falls silent.
+--  A value that comes in segments. The reception of its bus takes the
+--  segments. The port region of its port sends flow control, and ends a
+--  transfer whose segments do not come.
 --
---  Guarantees   each transfer that is given up is told once, by Take or by
---               Look; the data of a value are whole
+--  Guarantees   each transfer that is given up is reported once, by Take or by
+--               Look; the data of a value are complete
 --  Tasking      the reception calls Take and Read, one port region calls Look
 --  Timing       the time to copy a Receiver; never blocks
 --  Analysis     one shared object, ceiling Ceiling
@@ -30,7 +30,7 @@ is
       Count  : Event_Count := 0;
       Status : Flow_Status := Continue_To_Send;
    end record;
-   --  The flow control to send: its Count changes with each one.
+   --  The flow control to send. Its Count changes with each one.
 
    procedure Take
      (Payload : Interfaces.Unsigned_64;
@@ -42,14 +42,14 @@ is
 
    procedure Read (Value : out Value_Bytes)
    with Global => (Input => State);
-   --  The value, after Take has found it Complete.
+   --  The value. Call it after Take has found the value Complete.
 
    procedure Look
      (Now     : Nanoseconds;
       Wanted  : out Flow_Request;
       Expired : out Boolean)
    with Global => (In_Out => State);
-   --  What is to be sent; and whether a transfer has just been given up,
-   --  because the time is Now.
+   --  The flow control to send at the time Now. Expired: the transfer has just
+   --  been given up because of its time-out.
 
 end Ravenchart.Can.Iso_Tp.Reassemblies;

@@ -4,15 +4,14 @@
 --  The receiver of values in segments (ISO 15765-2), segment by segment.
 --
 --  Guarantees   a value is Complete only when all its bytes have come, in
---               order and with no more than Timeout between two segments;
---               nothing is written outside its room; a longer value is
---               refused
+--               order and with no more than Timeout between two segments. No
+--               byte is written outside its room; a longer value is refused
 --  Tasking      none: the task of the reception owns the Receiver
 --  Timing       linear in the room for a value
 --
---  N_Cr is Timeout. It counts from the segment before, so that the time until
---  flow control is sent is part of it. Take finds a segment that is late,
---  Give_Up one that does not come.
+--  Timeout is N_Cr. It counts from the segment before, so that it includes the
+--  time until flow control is sent. Take finds a segment that is late, Give_Up
+--  a segment that does not come.
 
 package Ravenchart.Can.Iso_Tp.Receivers
   with SPARK_Mode, Pure
@@ -25,7 +24,7 @@ is
       Timeout  : Positive_Nanoseconds := 1;
       Patience : Positive_Nanoseconds := 1;
    end record;
-   --  Length: bytes of a value. Block: segments that are asked for at once.
+   --  Length: bytes of a value. Block: segments that are requested at once.
    --  Patience: the silence that ends a transfer, which is Timeout and the
    --  longest time from the Stamp of a segment until it is taken.
 
@@ -38,15 +37,16 @@ is
       Last     : Nanoseconds     := 0;
    end record;
    --  Is_Open: a transfer is under way. Got: bytes of Data that have come.
-   --  Sequence: of the next segment. Left: those until flow control is sent,
-   --  0 where none is. Last: when the last segment came.
+   --  Sequence: the number of the next segment. Left: segments until flow
+   --  control is sent, 0 where none is. Last: the time of the last segment.
 
    type Outcome is
      (Ignored, Taken, Complete, Restarted, Timed_Out, Wrong_Sequence,
       Wrong_Length);
    --  Taken: a segment of a value that is not complete. Restarted: the same,
-   --  and the value before it is given up. Timed_Out: it came too late, and
-   --  the value is given up. Wrong_Length: a value of another length.
+   --  and the value before it is given up. Timed_Out: the segment came too
+   --  late, and the value is given up. Wrong_Length: a value of another
+   --  length.
 
    subtype Fault is Outcome range Restarted .. Wrong_Length;
 
@@ -122,6 +122,6 @@ is
        and then State.Sequence = State'Old.Sequence
        and then State.Left = State'Old.Left
        and then State.Last = State'Old.Last;
-   --  The time is Now: end a transfer that no segment has come for.
+   --  End the transfer if no segment has come for Patience until Now.
 
 end Ravenchart.Can.Iso_Tp.Receivers;

@@ -11,7 +11,7 @@ is
        State.Phase = Idle
        and then State.Data = State'Old.Data
        and then State.Sent = State'Old.Sent;
-   --  No segment of this value follows.
+   --  End the transfer: no segment of this value follows.
 
    procedure Look
      (State : in out Sender;
@@ -23,7 +23,7 @@ is
        State.Data = State'Old.Data
        and then State.Sent = State'Old.Sent
        and then (if Fault /= None then State.Phase = Idle);
-   --  Flow control that is awaited has come.
+   --  The awaited flow control has come.
 
    ------------------
    -- End_Transfer --

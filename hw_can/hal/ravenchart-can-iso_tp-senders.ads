@@ -1,17 +1,17 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The sender of values in segments (ISO 15765-2): one segment at the most at
---  the end of each execution of the row that sends.
+--  The sender of values in segments (ISO 15765-2): at most one segment at the
+--  end of each execution of the row that sends.
 --
---  Guarantees   segments go in order, each byte once; a segment is due only
+--  Guarantees   segments go in order, each byte once. A segment is due only
 --               Distance executions after the last one, or more where the
---               receiver asks for more; a receiver that is silent, wants too
+--               receiver requests it. A receiver that is silent, asks for too
 --               many waits or has no room ends the transfer
 --  Tasking      none: the task of the row owns the Sender
 --  Timing       linear in the length of the value
 --
---  Time counts in executions of the row. N_Bs is Timeout, N_WFTmax Waits.
+--  Time counts in executions of the row. Timeout is N_Bs, Waits N_WFTmax.
 
 package Ravenchart.Can.Iso_Tp.Senders
   with SPARK_Mode, Pure
@@ -30,9 +30,9 @@ is
       Waits    : Block_Size   := 0;
       Row      : Row_Period   := 1;
    end record;
-   --  Length: bytes of a value. Distance: executions from one segment to the
-   --  next, at least. Timeout: executions that flow control is awaited.
-   --  Waits: how often in a row the receiver may ask for patience.
+   --  Length: bytes of a value. Distance: the least number of executions from
+   --  one segment to the next. Timeout: executions for which flow control is
+   --  awaited. Waits: how often in a row the receiver may answer with Wait.
 
    type Flow_Notice is record
       Count      : Event_Count  := 0;
@@ -40,7 +40,7 @@ is
       Block      : Block_Size   := 0;
       Separation : Microseconds := 0;
    end record;
-   --  The last flow control that came, and how many have come.
+   --  The last flow control, and the number of flow controls that have come.
 
    type Sender_Phase is (Idle, Starting, Awaiting_Flow, Sending);
    --  Starting: the first segment is next. Sending: a consecutive one is.
@@ -60,16 +60,17 @@ is
       Apart    : Turns           := 1;
       Seen     : Event_Count     := 0;
    end record;
-   --  Next: the newest value, if Has_Next. Data: that of the transfer, of
-   --  which Sent bytes have gone. Sequence: of the next segment. Left: those
-   --  until the next flow control, 0 where none is awaited. Waited:
-   --  executions since flow control is awaited. Since: since the last
-   --  segment. Gap: before the next one, Apart: between those of a block.
-   --  Seen: flow control that has been looked at.
+   --  Next: the newest value, if Has_Next. Data: the value of the transfer, of
+   --  which Sent bytes have gone. Sequence: the number of the next segment.
+   --  Left: segments until the next flow control, 0 where none is awaited.
+   --  Waited: executions for which flow control has been awaited. Since:
+   --  executions since the last segment. Gap: the distance before the next
+   --  segment, Apart: that between the segments of a block. Seen: the flow
+   --  controls that have been read.
 
    type Transfer_Fault is
      (None, Timed_Out, Overflowed, Waited_Too_Often, Wrong_Flow);
-   --  Why a transfer ended before all of its value had gone.
+   --  The reason why a transfer ended before all of its value had gone.
 
    function Executions
      (Separation : Microseconds; Row : Row_Period) return Turns
@@ -79,8 +80,8 @@ is
          (Execution_Count (Separation) + Execution_Count (Row) - 1)
          / Execution_Count (Row) + 1)
    with Global => null;
-   --  Executions that are further apart than Separation, even if the first
-   --  of them is as late as it may be and the last one is early.
+   --  Executions that lie further apart than Separation, even if the first one
+   --  is as late as possible and the last one is early.
 
    procedure Give (State : in out Sender; Item : Value_Bytes)
    with
@@ -91,8 +92,8 @@ is
        and then State.Phase = State'Old.Phase
        and then State.Data = State'Old.Data
        and then State.Sent = State'Old.Sent;
-   --  A value to send, in place of one that waits. A transfer that has begun
-   --  goes on.
+   --  A value to send. It replaces a value that waits. A transfer that has
+   --  begun continues.
 
    procedure Count
      (State : in out Sender;
@@ -115,7 +116,7 @@ is
           then
             State.Data = State'Old.Data and then State.Sent = State'Old.Sent)
        and then (if Fault /= None then State.Phase = Idle);
-   --  The row has ended an execution: look at flow control, give up, or begin
+   --  The row has ended an execution: read flow control, give up, or begin
    --  with the value that waits.
 
    function Is_Due (State : Sender; S : Setting) return Boolean
@@ -133,17 +134,17 @@ is
        then (if S.Length <= 7 then S.Length else 6)
        else Natural'Min (7, S.Length - State.Sent))
    with Global => null, Pre => Is_Due (State, S);
-   --  Bytes of the value in that segment.
+   --  The number of bytes of the value in that segment.
 
    function First_Data (State : Sender; S : Setting) return Byte_Index
    is (if State.Phase = Starting and then S.Length > 7 then 2 else 1)
    with Global => null;
-   --  The byte of that segment in which they begin.
+   --  The position of these bytes in the segment.
 
    function First_Sent (State : Sender) return Byte_Count
    is (if State.Phase = Starting then 0 else State.Sent)
    with Global => null;
-   --  The first of them in the value.
+   --  The position of these bytes in the value.
 
    function Next_Segment
      (State : Sender; S : Setting) return Interfaces.Unsigned_64

@@ -2,10 +2,10 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  ISO-TP: values longer than a frame, as segments on classic CAN buses (ISO
---  15765-2, normal addressing). The segments as values; the two ends of a
---  transfer are child packages.
+--  15765-2, normal addressing). This package has the segments; its child
+--  packages are the two ends of a transfer.
 --
---  Guarantees   Decoded is total: what is no segment is Unknown
+--  Guarantees   Decoded is total: data that are no segment are Unknown
 --  Tasking      none: segments are values
 --  Timing       constant
 
@@ -33,7 +33,7 @@ is
    type Sequence_Number is mod 16;
 
    subtype Block_Size is Natural range 0 .. 255;
-   --  Consecutive frames before the next flow control; 0: all that are left.
+   --  Consecutive frames before the next flow control; 0 for all the rest.
 
    type Flow_Status is (Continue_To_Send, Wait, Overflow, Invalid);
    --  Invalid: a reserved status.
@@ -54,8 +54,8 @@ is
       Block      : Block_Size := 0;
       Separation : Microseconds := 0;
    end record;
-   --  Length is of single and first frames, Sequence of consecutive ones, the
-   --  last three are of flow control.
+   --  Length belongs to single and first frames, Sequence to consecutive ones,
+   --  the last three to flow control.
 
    function Octet_Of
      (Payload : Interfaces.Unsigned_64; Index : Byte_Index) return Octet
@@ -119,8 +119,8 @@ is
           when Consecutive  => Length >= 2,
           when Flow_Control => Length >= 3,
           when Unknown      => True);
-   --  What a frame of Length bytes is; a first frame of a value of more than
-   --  4,095 bytes has the length 0.
+   --  The segment in a frame of Length bytes. A first frame of a value of more
+   --  than 4,095 bytes has the length 0.
 
    function Flow_Payload
      (Status : Flow_Status; Block : Block_Size; Code : Octet)

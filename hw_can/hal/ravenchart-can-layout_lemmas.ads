@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the bits of a signal of a longer frame are, by the words where they
---  stand: proved here for all rows, so that of one row only its numbers are
---  left to compute.
+--  The bits of a signal of a longer frame, by the words that hold them. The
+--  lemmas are proved here for all rows, so that only the numbers of one row
+--  are left to compute.
 --
---  Guarantees   by proof; nothing here is executed
+--  Guarantees   by proof; no code here is executed
 --  Tasking      none
 --  Timing       none
 

@@ -1,10 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Layout tables: where a signal stands in the data of a frame, how its bits
---  count, and which frame carries the data, in the terms of CAN databases
---  (DBC). Contracts of generated code are stated by these tables; the bodies
---  of codecs, and what sends frames, do not use them.
+--  Layout tables: the position of a signal in the data of a frame, the meaning
+--  of its bits, and the frame that carries the data, in the terms of CAN
+--  databases (DBC). Contracts of generated code are stated by these tables;
+--  the bodies of codecs and of senders do not use them.
 --
 --  Guarantees   the meaning of a row is defined here, once for all models
 --  Tasking      none: tables are constants
@@ -19,8 +19,8 @@ package Ravenchart.Can.Layouts
 is
    type Byte_Order is (Intel, Motorola);
    --  Intel: Start is the least significant bit, and the signal goes upwards.
-   --  Motorola: Start is the most significant bit, and the signal goes down
-   --  to bit 0 of its byte, then on at bit 7 of the next byte.
+   --  Motorola: Start is the most significant bit. The signal goes down to bit
+   --  0 of its byte, then on from bit 7 of the next byte.
 
    subtype Bit_Index is Natural range 0 .. 511;
    --  Bit 0 is the least significant bit of byte 0, bit 8 that of byte 1.
@@ -55,7 +55,7 @@ is
      Global => null,
      Pre    => Width <= 64,
      Post   => (if Width <= 62 then Mask'Result < 2**62);
-   --  As many bits, all of them 1.
+   --  A mask of so many bits, all of them 1.
 
    function Reversed
      (Word : Interfaces.Unsigned_64) return Interfaces.Unsigned_64
@@ -68,7 +68,7 @@ is
        or (Interfaces.Shift_Left (Word, 40) and 16#FF_0000_0000_0000#)
        or Interfaces.Shift_Left (Word, 56))
    with Global => null;
-   --  The eight bytes of a word the other way round.
+   --  The eight bytes of a word in the opposite order.
 
    function Raw
      (Word : Interfaces.Unsigned_64; S : Signal) return Interfaces.Unsigned_64
@@ -98,7 +98,7 @@ is
      Pre    =>
        Reaches_To (S) <= 512
        and then First_In_Order (S) / 64 < (Reaches_To (S) - 1) / 64;
-   --  The bits of a signal in two neighbouring words, others above them.
+   --  The bits of a signal in two neighbouring words; other bits above them.
 
    function Raw
      (Words : Fd_Frames.Fd_Words; S : Signal) return Interfaces.Unsigned_64
@@ -122,8 +122,8 @@ is
        then Number'Base (Raw) - Number'Base (Mask (S.Width)) - 1
        else Number'Base (Raw))
    with Global => null, Pre => (if S.Signed then S.Width <= 62);
-   --  The raw value that bits are; 2**62 for all that is beyond what models
-   --  count.
+   --  The raw value of these bits; 2**62 for values beyond the range of
+   --  models.
 
    function Number_In
      (Word : Interfaces.Unsigned_64; S : Signal) return Number'Base
@@ -154,7 +154,7 @@ is
    function Holds (R : Frame_Row; S : Signal) return Boolean
    is (Reaches_To (S) <= 8 * R.Length)
    with Global => null;
-   --  Does the whole signal stand in the data of the frame?
+   --  Is the whole signal in the data of the frame?
 
    function Is_Framed (F : Any_Frames.Any_Frame; R : Frame_Row) return Boolean
    is (Any_Frames.Carries (F, R.Family, R.Length)

@@ -1,20 +1,20 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  End-to-end protection of messages: a counter and a CRC over the data and
---  an identifier of the message, which is not in the frame as a whole. The
+--  End-to-end protection of messages: a counter and a CRC over the data and an
+--  identifier of the message, which is not in the frame as a whole. The
 --  receiver finds corrupted, repeated, lost, inserted and masqueraded frames.
 --
 --  Guarantees   a frame is Usable only if its CRC is right for its data and
---               its data identifier, and its counter is 1 to Max_Delta after
---               that of the last frame whose CRC was right
+--               its data identifier. Its counter must also be 1 to Max_Delta
+--               after that of the last frame whose CRC was right
 --  Tasking      none: one task owns each Sender and each Receiver
 --  Timing       linear in the length of the frame
 --
 --  AUTOSAR FO PRS_E2EProtocol: profiles 1, 2, 5 and 11, header at byte 0.
 --  Protect is E2E_PxxProtect. Check is E2E_P05Check and E2E_P11Check for all
---  profiles; the first frame has the status Initial, as in profiles 1 and 2,
---  and Sync is SyncCounterInit of these.
+--  profiles. The first frame has the status Initial, as in profiles 1 and 2,
+--  and Sync is their SyncCounterInit.
 
 with Interfaces;
 with Ravenchart.Can.Any_Frames;
@@ -31,10 +31,10 @@ is
    type Profile is (Profile_1, Profile_2, Profile_5, Profile_11);
 
    type Id_Mode is (Both, Alternating, Nibble);
-   --  Which bytes of the data identifier are in the CRC, in profiles 1 and
-   --  11. Both: both (variants 1A and 11A). Alternating: the low one with
-   --  even counters, the high one with odd counters (1B). Nibble: the low one
-   --  and a 0; the low half of the high one is in the frame (1C and 11C).
+   --  The bytes of the data identifier in the CRC, in profiles 1 and 11. Both:
+   --  both (variants 1A and 11A). Alternating: the low one with even counters,
+   --  the high one with odd counters (1B). Nibble: the low one and a 0; the
+   --  low half of the high one is in the frame (1C and 11C).
 
    type Id_List is array (Interfaces.Unsigned_8 range 0 .. 15)
      of Interfaces.Unsigned_8;
@@ -48,13 +48,13 @@ is
          when Profile_2              => 15,
          when Profile_5              => 255)
    with Global => null;
-   --  The counter is 0 after it.
+   --  The last value of the counter, which 0 follows.
 
    function Header_Length (P : Profile) return Positive
    is (if P = Profile_5 then 3 else 2)
    with Global => null;
    --  Bytes that hold the CRC and the counter; in profiles 1, 2 and 11 the
-   --  high half of the second one is data, but in mode Nibble.
+   --  high half of the second one is data, except in mode Nibble.
 
    subtype Delta_Limit is Counter_Value range 1 .. 254;
 
@@ -74,9 +74,9 @@ is
        Length >= Header_Length (Kind)
        and then Max_Delta < Last_Counter (Kind)
        and then (if Kind = Profile_11 then Mode in Both | Nibble);
-   --  Ids is of profile 2 alone, Data_Id of the others. Length: bytes of the
-   --  frame. Max_Delta: 1 where no frame may be lost. Sync: frames in
-   --  sequence after a wrong one until they are used again.
+   --  Ids belongs to profile 2, Data_Id to the others. Length: bytes of the
+   --  frame. Max_Delta: 1 where no frame may be lost. Sync: frames in sequence
+   --  after a wrong one until frames are used again.
 
    function Counter
      (F : Any_Frames.Any_Frame; P : Profile) return Counter_Value
@@ -117,7 +117,7 @@ is
          (Any_Frames.Byte (F, 1) and 16#F0#)
          = Interfaces.Shift_Left (High_Id (S), 4))
    with Global => null;
-   --  Is it that of this message?
+   --  Is that part the one of this message?
 
    function Data (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes
    with
@@ -134,9 +134,10 @@ is
      Global => null,
      Pre    => Count <= Last_Counter (S.Kind),
      Post   => (if S.Kind /= Profile_5 then Crc'Result <= 16#FF#);
-   --  The CRC over Item, the frame's data of S.Length bytes, without the
-   --  bytes of the CRC itself, and over the data identifier: before the data
-   --  in profiles 1 and 11, behind them in profiles 2 and 5.
+   --  The CRC over Item and over the data identifier. Item holds the frame's
+   --  data of S.Length bytes, without the bytes of the CRC itself. The data
+   --  identifier comes before the data in profiles 1 and 11, and after them in
+   --  profiles 2 and 5.
 
    function Is_Intact
      (F : Any_Frames.Any_Frame; S : Setting) return Boolean
@@ -146,7 +147,7 @@ is
        and then
          Crc_Field (F, S.Kind) = Crc (S, Data (F), Counter (F, S.Kind)))
    with Global => null;
-   --  Is it a frame of this message, with a right CRC?
+   --  Is it a frame of this message with a right CRC?
 
    function Header_Mask (S : Setting) return Interfaces.Unsigned_64
    is (case S.Kind is
@@ -177,7 +178,7 @@ is
          (for all I in 8 .. Fd_Frames.Fd_Index'Last =>
             Any_Frames.Byte (F, I) = Any_Frames.Byte (G, I)))
    with Ghost, Global => null;
-   --  Frames that differ in the header alone.
+   --  Frames that differ only in the header.
 
    function Protected_Frame
      (F : Any_Frames.Any_Frame; S : Setting; Count : Counter_Value)
@@ -223,17 +224,17 @@ is
    type Status is
      (Ok, Ok_Some_Lost, Initial, Synchronizing, Repeated, Wrong_Sequence,
       Error);
-   --  Ok: the next frame. Ok_Some_Lost: at most Max_Delta - 1 are missing
-   --  before it. Initial: the first one, nothing to compare it with.
-   --  Synchronizing: in sequence, but fewer than Sync since a wrong one.
+   --  Ok: the next frame. Ok_Some_Lost: at most Max_Delta - 1 frames are
+   --  missing before it. Initial: the first frame, without one to compare it
+   --  with. Synchronizing: in sequence, but fewer than Sync since a wrong one.
    --  Repeated: the counter of the last one. Wrong_Sequence: any other
    --  counter. Error: not intact.
 
    subtype Usable is Status range Ok .. Ok_Some_Lost;
-   --  Only then the data may be used.
+   --  The statuses with which the data may be used.
 
    subtype Fault is Status range Repeated .. Error;
-   --  What a correct sender on a faultless way never causes.
+   --  The statuses that a correct sender never causes on a faultless bus.
 
    type Receiver is record
       Has_Last : Boolean := False;
@@ -301,7 +302,7 @@ is
                 (True, Counter (F, S.Kind), State'Old.Awaited - 1),
               when Initial | Wrong_Sequence =>
                 (True, Counter (F, S.Kind), S.Sync - 1));
-   --  The status of a frame, and what is known after it.
+   --  The status of a frame, and the state of the receiver after it.
 
    procedure Lemma_Late_Not_Used
      (State : Receiver;
@@ -322,8 +323,8 @@ is
               then 0
               else Integer (Last_Counter (S.Kind)) + 1),
      Post   => Status_Of (State, S, F) not in Usable;
-   --  A copy of one of the last frames, or one that was delayed behind them,
-   --  is not used: neither the last one (Age = 0) nor any as old as the
-   --  counter can tell.
+   --  A copy of one of the last frames, or a frame that was delayed behind
+   --  them, is not used. This holds for the last one (Age = 0) and for any one
+   --  within the range of the counter.
 
 end Ravenchart.Can.Protection;

@@ -1,10 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The way into a driver: frames with the time at which they came, and one
---  task that waits for them.
+--  The way from a driver to the program: frames with the time at which they
+--  came, and one task that waits for them.
 --
---  Guarantees   strict order; what does not fit is rejected and counted
+--  Guarantees   strict order; a frame that does not fit is rejected and
+--               counted
 --  Tasking      any number of callers up to Ceiling; one caller of Wait
 --  Timing       constant, and a reading of the clock; only Wait suspends
 --  Analysis     one shared object, ceiling Ceiling
@@ -37,8 +38,8 @@ is
    procedure Wait
      (F : out Any_Frames.Any_Frame; Stamp : out Nanoseconds)
    with Global => (In_Out => (State, Wake_Up));
-   --  Suspend the one caller until a frame is there, and hand it over with
-   --  the time since Epochs.Start at which it came, 0 before that.
+   --  Suspend the one caller until there is a frame, and hand it over with the
+   --  time since Epochs.Start at which it came, 0 before that.
 
    function Lost return Event_Count
    with Volatile_Function, Global => State;

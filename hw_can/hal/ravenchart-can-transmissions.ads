@@ -1,19 +1,19 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Transmission modes of messages besides the periodic one: when a frame goes
---  at the end of an execution of the row that sends it.
+--  Transmission modes of messages besides the periodic one: they decide
+--  whether a frame goes at the end of an execution of the row that sends it.
 --
 --  Guarantees   a frame is due only if at least Minimum executions have begun
---               since that of the last one; in mode On_Change only if it
---               differs from the last one; in mode Mixed also once Period
---               executions have begun, at the latest
+--               since that of the last one. In mode On_Change it is due only
+--               if it differs from the last one. In mode Mixed it is also due
+--               once Period executions have begun, at the latest
 --  Tasking      none: the task of the row owns the Sender
 --  Timing       linear in the length of the frame
 --
 --  AUTOSAR CP SWS_COM: transmission modes DIRECT (On_Change: triggered on
 --  change; On_Event: triggered) and MIXED, and the minimum delay time. Time
---  counts in executions of the row, which begin once every period of it.
+--  counts in executions of the row, which begin once in every period of it.
 
 with Ravenchart.Can.Any_Frames;
 
@@ -36,7 +36,7 @@ is
       Period  : Distance          := Distance'Last;
    end record
    with Predicate => Minimum <= Period;
-   --  Minimum: the minimum delay time. Period is of mode Mixed alone.
+   --  Minimum: the minimum delay time. Period belongs to mode Mixed.
 
    type Sender is record
       Has_Value : Boolean := False;
@@ -64,7 +64,7 @@ is
             when Mixed     =>
               F /= State.Last or else State.Since >= S.Period))
    with Global => null;
-   --  Does the mode ask for F, which carries the newest value, to be sent?
+   --  Does the mode require to send F, which carries the newest value?
 
    function Is_Due
      (State : Sender; S : Setting; F : Any_Frames.Any_Frame) return Boolean

@@ -54,19 +54,19 @@ is
       Log    : Fault_Notices.Fault_Log;
       Counts : Counters;
    end Board;
-   --  What the driver tells, and the program reads.
+   --  Written by the driver, read by the program.
 
    Is_Filled : Boolean := False
    with Atomic;
    --  True when a frame may have been queued since Take_Queued found none;
-   --  to look at this costs no lock.
+   --  reading it takes no lock.
 
    Recovery_Asked : Boolean := False
    with Atomic;
    --  True when recovery was requested since Take_Request.
 
    Work : Suspension_Object;
-   --  True when there may be work since the caller of Wait_Work looked.
+   --  True when there may be work since the caller of Wait_Work last looked.
 
    protected body Board is
 

@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The upper half of a CAN driver, the same for every driver: the queues
---  between the program and the tasks of the driver, the state and the
+--  The upper half of a CAN driver, the same for every driver. It holds the
+--  queues between the program and the tasks of the driver, the state and the
 --  counters of the controller, and the request for recovery.
 --
---  Guarantees   frames leave each queue in the order in which they came;
---               what does not fit is rejected and counted; no wake-up of the
---               driver is lost
+--  Guarantees   frames leave each queue in the order in which they came; a
+--               frame that does not fit is rejected and counted; no wake-up of
+--               the driver is lost
 --  Tasking      the operations of the program as in Controllers; the others
 --               by the tasks of the driver, with one caller of Take_Queued,
 --               Wait_Queued, Wait_Work and Take_Request
@@ -79,7 +79,7 @@ is
    procedure Wait_Work
    with Global => (In_Out => Wake_Up);
    --  Suspend the caller until a frame was queued, recovery was requested or
-   --  Wake was called since it last returned.
+   --  Wake was called since the last return.
 
    procedure Wake
    with Global => (In_Out => Wake_Up);
@@ -89,7 +89,7 @@ is
    with Global => (In_Out => Wake_Up);
    --  Was recovery requested since the last call?
 
-   --  For the tasks of the driver: what came of it
+   --  For the tasks of the driver: results
 
    procedure Receive (F : Any_Frames.Any_Frame)
    with
@@ -105,18 +105,18 @@ is
 
    procedure Note_Traffic
    with Global => (In_Out => State);
-   --  The bus has carried a frame: a controller that was Stopped is
+   --  The bus has carried a frame: a controller that was Stopped is now
    --  Error_Active.
 
    procedure Note_Errors (Transmit, Receive : Error_Count)
    with Global => (In_Out => State);
-   --  The error counters of the controller.
+   --  Note the error counters of the controller.
 
    type Counted is (Sent, Lost_Out, Lost_In, Rejected_Line);
-   --  What Count adds to: see Counters.
+   --  The counter that Count adds to: see Counters.
 
    procedure Count (What : Counted; By : Event_Count := 1)
    with Global => (In_Out => State);
-   --  So many more, and no more than the last value.
+   --  Add By to a counter, up to its last value.
 
 end Ravenchart.Can.Upper_Halves;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Classic CAN frames, and the words that every controller shares.
+--  Classic CAN frames, and the types that every controller shares.
 --
 --  Guarantees   the identifier of a Frame fits its format; Payload is 0 in
 --               the bits beyond its length, and as a whole in a remote frame
@@ -19,13 +19,13 @@ is
    --  11 or 29 bits of identifier.
 
    type Frame_Kind is (Data, Remote);
-   --  A remote frame asks for data and carries none.
+   --  A remote frame requests data and carries none.
 
    type Identifier is range 0 .. 2**29 - 1;
    --  The smaller one wins arbitration, among frames of one format.
 
    subtype Standard_Identifier is Identifier range 0 .. 2**11 - 1;
-   --  What fits the standard format.
+   --  An identifier that fits the standard format.
 
    subtype Data_Length is Natural range 0 .. 8;
    --  Bytes in a classic frame.
@@ -62,10 +62,10 @@ is
    with Predicate => Fits (Id, Format);
    --  Bits holds the data: byte 0 in the lowest eight bits, and so on, on
    --  every machine; read it by Payload or Byte. Length of a remote frame is
-   --  the length it asks for.
+   --  the length that it requests.
 
    Null_Frame : constant Frame := (others => <>);
-   --  Stands where there is no frame.
+   --  Fills a place without a frame.
 
    function Payload (F : Frame) return Interfaces.Unsigned_64
    is (if F.Kind = Data then F.Bits and Mask (F.Length) else 0)
@@ -114,9 +114,9 @@ is
    subtype Nominal_Rate is Bits_Per_Second range 1 .. 1_000_000;
 
    type Recovery_Policy is (Automatic, On_Request);
-   --  Who asks a controller to leave bus-off: its driver, as soon as it is
-   --  off, or whoever calls Request_Recovery. ISO 11898-1: it is back when
-   --  it has seen 128 sequences of 11 recessive bits since.
+   --  The origin of the request to leave bus-off: the driver at once, or a
+   --  caller of Request_Recovery. ISO 11898-1: the controller is back when it
+   --  has seen 128 sequences of 11 recessive bits since.
 
    type Bus_Setting is record
       Bit_Rate  : Nominal_Rate := 500_000;
@@ -124,18 +124,18 @@ is
       Takes_Fd  : Boolean := False;
       Recovery  : Recovery_Policy := Automatic;
    end record;
-   --  How a controller is configured: the bit rate, that of the data of CAN
-   --  FD frames with switched rate, 0 where none switches, whether there are
-   --  CAN FD frames on the bus, and how it leaves bus-off.
+   --  The configuration of a controller. Data_Rate: the bit rate of the data
+   --  phase, 0 where no frame switches. Takes_Fd: the bus carries CAN FD
+   --  frames. Recovery: the way out of bus-off.
 
    type Send_Status is (Queued, Rejected_Full);
-   --  What became of a frame handed to a controller.
+   --  The outcome of handing a frame to a controller.
 
    type Controller_State is (Stopped, Error_Active, Error_Passive, Bus_Off);
-   --  Stopped when not connected to a bus; the others as in ISO 11898-1.
+   --  Stopped: not connected to a bus; the others as in ISO 11898-1.
 
    type Error_Count is range 0 .. 256;
-   --  An error counter of the controller; bus-off is 256.
+   --  An error counter of the controller; 256 means bus-off.
 
    type Counters is record
       Sent            : Event_Count := 0;
@@ -146,7 +146,7 @@ is
       Transmit_Errors : Error_Count := 0;
       Receive_Errors  : Error_Count := 0;
    end record;
-   --  Received counts accepted frames, those lost for want of room included;
-   --  Lost_Out counts frames rejected, and those sent while not connected.
+   --  Received counts accepted frames, also those lost for want of room;
+   --  Lost_Out counts rejected frames, and frames sent while not connected.
 
 end Ravenchart.Can;

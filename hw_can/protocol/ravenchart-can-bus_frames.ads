@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What a node of the simulated bus hands to its controller, and how long it
---  takes on the wire.
+--  The frames that a node of the simulated bus hands to its controller, and
+--  their durations on the wire.
 --
 --  Guarantees   a duration follows from the bits of the frame's image alone
 --  Tasking      none: frames are values
@@ -20,8 +20,8 @@ is
    use type Wire.Phases;
 
    type Frame_Family is (Classic, Flexible, Asked_Error);
-   --  CAN 2.0, CAN FD, or no frame at all: an error frame that somebody
-   --  asks the bus for. Class and details of that one travel as a frame.
+   --  CAN 2.0, CAN FD, or a request to the bus for an error frame. Such a
+   --  request has the class and the details of the error frame as a frame.
 
    type Bus_Frame (Family : Frame_Family := Classic) is record
       case Family is
@@ -39,7 +39,7 @@ is
              Format => F.Plain.Format,
              Kind   => F.Plain.Kind))
    with Global => null;
-   --  What takes part in arbitration.
+   --  The part of F in arbitration.
 
    function Is_First (A, B : Bus_Frame) return Boolean
    is (A.Family = Asked_Error
@@ -60,8 +60,8 @@ is
    with
      Global => null,
      Post   => Wire.Is_Ordered (Image_Of'Result);
-   --  The bits on the bus; of an error frame that is asked for, those of the
-   --  frame that names it.
+   --  The bits on the bus; for a requested error frame, those of the frame
+   --  that names it.
 
    function Rate_Of (F : Bus_Frame) return Fd_Frames.Bit_Rate_Use
    is (if F.Family = Flexible then F.Fd.Rate else Fd_Frames.Constant_Rate)
@@ -76,9 +76,9 @@ is
       Data    : Bit_Time := 500;
       Switch  : Nanoseconds range 0 .. Bit_Time'Last := 1_200;
    end record;
-   --  500 kbit/s, and 2 Mbit/s in the data phase, unless it is said. Switch:
-   --  how much later the sample point of a nominal bit is in its bit than
-   --  that of a data bit in its own; here both are at 80 %.
+   --  By default 500 kbit/s, and 2 Mbit/s in the data phase. Switch: how much
+   --  later the sample point of a nominal bit lies in its bit than that of a
+   --  data bit in its own; here both are at 80 %.
 
    Longest_Time : constant Positive_Nanoseconds :=
      Wire.Longest * Bit_Time'Last;
@@ -112,8 +112,8 @@ is
        and then
          (if Last = Wire.Length (I)
           then Phases_Until'Result = Wire.Phases_Of (I, Rate));
-   --  The bits up to Last, by the rate at which they go: the bit of the switch
-   --  counts as a data bit, the delimiter of the CRC as a nominal one.
+   --  The bits up to Last, by their rate: the bit of the switch counts as a
+   --  data bit, the delimiter of the CRC as a nominal one.
 
    function Time_Of (P : Wire.Phases; T : Bit_Times) return Nanoseconds
    with
@@ -123,7 +123,7 @@ is
          Nanoseconds (P.Nominal) * T.Nominal
          + Nanoseconds (P.Data) * T.Data
        and then Time_Of'Result <= 2 * Longest_Time;
-   --  How long so many bits take.
+   --  The duration of so many bits.
 
    function Time_Until
      (I    : Wire.Image;
@@ -139,8 +139,8 @@ is
      Global => null,
      Pre    => Wire.Is_Ordered (I),
      Post   => Time_Until'Result <= 2 * Longest_Time + Bit_Time'Last;
-   --  From the start of frame to the end of bit Last. The bit of the switch
-   --  is nominal up to its sample point, the delimiter of the CRC behind it:
-   --  so bits between them end later by Switch.
+   --  The time from the start of frame to the end of bit Last. The bit of the
+   --  switch is nominal up to its sample point, the delimiter of the CRC
+   --  behind it: so bits between them end later by Switch.
 
 end Ravenchart.Can.Bus_Frames;

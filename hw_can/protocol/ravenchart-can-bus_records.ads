@@ -27,22 +27,22 @@ is
    Record_Bytes : constant := 88;
 
    subtype Position is Positive range 1 .. Record_Bytes;
-   --  The page counts from 0.
+   --  A byte of a record. The page counts from 0.
 
    subtype Image is Octets (Position);
    --  One record as it goes over the wire.
 
    type Request_Kind is
      (Hello, Frame_Request, Recovery_Request, Broken, Wrong_Version);
-   --  What a client can say; Broken when it is none of them.
+   --  The kinds of records of a client; Broken is none of them.
 
    Version : constant := 1;
 
    subtype Bit_Rate is Interfaces.Unsigned_32;
-   --  In bit/s; 0 takes the bus as it is.
+   --  A bit rate in bit/s; 0 accepts that of the bus.
 
    Longest_Restart : constant := 600_000;
-   --  In ms, from bus-off to the request for recovery.
+   --  The longest time in ms from bus-off to the request for recovery.
 
    type Request is record
       Kind      : Request_Kind := Broken;
@@ -52,8 +52,9 @@ is
       Number    : Interfaces.Unsigned_32 := 0;
       Frame     : Bus_Frames.Bus_Frame;
    end record;
-   --  Takes_Fd and the rates of a hello; Number and Frame of a request. The
-   --  Number of a hello is the restart delay in ms; 0 takes that of the bus.
+   --  Takes_Fd and the rates belong to a hello, Number and Frame to a request.
+   --  The Number of a hello is the restart delay in ms; 0 takes that of the
+   --  bus.
 
    function Read (Bytes : Image) return Request
    with
@@ -63,7 +64,7 @@ is
           when Frame_Request => Read'Result.Number > 0,
           when Hello         => Read'Result.Number <= Longest_Restart,
           when others        => True);
-   --  What a client has said.
+   --  The content of a record of a client.
 
    type Status is
      (Version_Is_Wrong,
@@ -74,7 +75,7 @@ is
       Wrong_Bit_Rate,
       Closing,
       No_Hello_In_Time);
-   --  Codes 1 to 8.
+   --  The codes 1 to 8.
 
    subtype Name_Length is Positive range 1 .. 16;
 
@@ -82,10 +83,10 @@ is
    is (Text'Length in Name_Length
        and then (for all C of Text => C in '!' .. '~'))
    with Global => null;
-   --  May a bus or a node be called so?
+   --  Is Text a valid name of a bus or a node?
 
    subtype Node_Number is Positive range 1 .. 255;
-   --  By which the bus knows a node.
+   --  The number of a node on the bus.
 
    function Welcome
      (Name    : String;
@@ -101,7 +102,7 @@ is
        Is_Name (Name)
        and then Nominal <= 1_000_000
        and then Data <= 20_000_000;
-   --  The answer to hello. Began: when bus time 0 was, in ns since 1970, or
+   --  The answer to hello. Began: the time of bus time 0 in ns since 1970, or
    --  0 in virtual time.
 
    function Frame_Record
@@ -117,20 +118,19 @@ is
    function Confirmation
      (Number : Interfaces.Unsigned_32; Now : Nanoseconds) return Image
    with Global => null, Pre => Number > 0;
-   --  This request was transmitted.
+   --  Confirms that this request was transmitted.
 
    function Refusal
      (Number : Interfaces.Unsigned_32; Why : Status) return Image
    with Global => null;
-   --  This request was not; with number 0, the connection ends.
+   --  Refuses this request; with number 0, the connection ends.
 
    function Error_Report
      (Identifier : Can.Identifier;
       Details    : Interfaces.Unsigned_64;
       Now        : Nanoseconds) return Image
    with Global => null;
-   --  An error frame that was seen: class and details as in Linux's
-   --  can/error.h.
+   --  An error frame on the bus: class and details as in Linux's can/error.h.
 
 private
 
@@ -151,7 +151,7 @@ private
    Status_Kind       : constant Byte := 7;
    Recovery_Kind     : constant Byte := 8;
 
-   --  Where the fields are, from 1
+   --  The positions of the fields, from 1
 
    Kind_At     : constant := 1;
    Flags_At    : constant := 2;
@@ -191,7 +191,7 @@ private
      (Bytes : Image; First : Positive; Last : Natural) return Boolean
    is (for all I in First .. Last => Bytes (I) = 0)
    with Global => null, Pre => Last <= Record_Bytes;
-   --  Is nothing there?
+   --  Are these bytes all 0?
 
    function State_Code
      (State : Fault_Confinement.Connected_State) return Byte
@@ -200,15 +200,15 @@ private
          when Error_Passive => 1,
          when Bus_Off       => 2)
    with Global => null;
-   --  What stands for it in a bus state.
+   --  The code of the state in a bus state.
 
    function Is_Greeting (Bytes : Image) return Boolean
    with
      Global => null,
      Post   =>
        (if Is_Greeting'Result then Bytes (Length_At) in 1 .. 16);
-   --  Do the flags, the mark, the name and the rates keep the rules of hello
-   --  and welcome, and is nothing behind them?
+   --  Do the flags, the mark, the name and the rates follow the rules of hello
+   --  and welcome, and are the bytes behind them 0?
 
    type Frame_Reading is record
       Is_Sound : Boolean := False;
@@ -218,6 +218,6 @@ private
    function Frame_In (Bytes : Image) return Frame_Reading
    with Global => null;
    --  The frame or error frame in a record of one of these kinds, if its
-   --  fields but time and number keep the rules.
+   --  fields except time and number follow the rules.
 
 end Ravenchart.Can.Bus_Records;

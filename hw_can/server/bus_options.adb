@@ -30,13 +30,14 @@ package body Bus_Options is
    Data_Sample    : Thousandths := 800;
 
    function Part (Text : String; Number : Positive) return String;
-   --  What stands between the colons, from 1; "0" where nothing does.
+   --  Part Number of the text between the colons, from 1; "0" where it is
+   --  empty.
 
    function Rate (Text : String) return Bus_Records.Bit_Rate;
    --  A bit rate whose bit time is a number of nanoseconds.
 
    procedure Set (Name, Value : String; Port : in out Natural);
-   --  One word of the command line.
+   --  Read one word of the command line.
 
    procedure Add_Fault (Value : String);
 
@@ -228,7 +229,7 @@ package body Bus_Options is
             when Constraint_Error =>
                Ada.Text_IO.Put_Line
                  (Ada.Text_IO.Standard_Error,
-                  "error: the bus cannot be told " & Word);
+                  "error: the bus does not accept " & Word);
                raise Wrong;
          end;
       end loop;

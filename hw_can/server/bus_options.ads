@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the bus server is told on its command line: words NAME=VALUE.
+--  The command line of the bus server: words NAME=VALUE.
 --
 --     port=29536       0 for a free one
 --     name=can0        1 to 16 characters from ! to ~
@@ -12,31 +12,32 @@
 --     restart_ms=0     from bus-off to the request for recovery; 0: by hand
 --     time=paced       or virtual
 --     buffer=fifo      or priority
---     log=FILE         writes what is on the bus there: a welcome record, then
---                      a record for each frame and error frame
---     seed=7:1000000   a bit is disturbed, at least so many ns apart
+--     log=FILE         a file of the bus: a welcome record, then a record for
+--                      each frame and error frame
+--     seed=7:1000000   disturbed bits by chance, at least so many ns apart
 --     fault=F:K:N:A:B  frame F meets fault K at node N, 0 for all. A: the
 --                      bit, the number of overload frames, the ns of delay
 --                      or the byte; B: the mask
---     event=T:K:N:I    at T ns, K happens to node N; I: identifier to babble
+--     event=T:K:N:I    event K at node N at T ns; I: identifier to babble
 
 with Ravenchart.Can.Bus_Servers;
 
 package Bus_Options is
 
    Wrong : exception;
-   --  What is told is not like that; it was said on standard error.
+   --  A word of the command line is wrong; a message was printed to standard
+   --  error.
 
    Bus : Ravenchart.Can.Bus_Servers.Server;
-   --  As it is told.
+   --  The bus that the command line describes.
 
    procedure Read (Port : out Natural);
    --  Read the command line.
 
    function Log_File return String;
-   --  Where to write what is on the bus; empty for nowhere.
+   --  The file for the log of the bus; empty for none.
 
    function Is_Paced return Boolean;
-   --  Does bus time go with the clock?
+   --  Does bus time follow the clock?
 
 end Bus_Options;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The bus server: one simulated CAN bus behind a TCP port of this machine,
---  as docs/bus-protocol.md says. `ravenchart bus` starts it.
+--  The bus server: one simulated CAN bus behind a TCP port of this machine, as
+--  docs/bus-protocol.md describes it. `ravenchart bus` starts it.
 
 with Ada.Command_Line;
 with Ada.Text_IO;
@@ -23,7 +23,7 @@ procedure Can_Bus is
    use type Bus_Sockets.Writing;
 
    Patience : constant Nanoseconds := 100_000_000;
-   --  A signal is seen within this.
+   --  The longest time until a signal is seen.
 
    Bus   : Bus_Servers.Server renames Bus_Options.Bus;
    Bytes : Bus_Records.Image;
@@ -34,15 +34,15 @@ procedure Can_Bus is
    --  Bus time.
 
    procedure Greet;
-   --  Take in whoever wants to connect.
+   --  Accept a client that wants to connect.
 
    procedure Listen (C : Node_Index);
-   --  Take what C has sent.
+   --  Read the records that C has sent.
 
    procedure Hand_Over
      (C : Node_Index; Horizon : Nanoseconds; Next : in out Nanoseconds);
-   --  Give C what it is to have by then; Next is at most when it is to have
-   --  more, unless it takes nothing now.
+   --  Give C the records that are due by Horizon. Next becomes at most the
+   --  time of the next record, unless C accepts none now.
 
    -----------
    -- Greet --

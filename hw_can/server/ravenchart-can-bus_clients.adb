@@ -10,7 +10,7 @@ is
      Global => null,
      Post   =>
        To.State in To.State'Old | Given_Up and then To.Last = To.Last'Old;
-   --  Queue a record. Who is too far behind is given up.
+   --  Queue a record. A client that is too far behind is given up.
 
    ---------
    -- Say --

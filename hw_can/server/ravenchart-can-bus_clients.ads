@@ -1,10 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  One client of the bus server: how far it has come, and what it is told.
+--  One client of the bus server: its progress in the protocol, and the records
+--  for it.
 --
---  Guarantees   the latest time that it was told never goes back; a client
---               that does not read is given up
+--  Guarantees   the latest time in its records never goes back; a client that
+--               does not read is given up
 --  Tasking      none: one owner for each Client
 --  Timing       linear in the requests that are refused
 
@@ -30,10 +31,10 @@ is
    use type Interfaces.Unsigned_32;
 
    Most_Nodes : constant := 15;
-   --  The last client of all is only told that there is no room.
+   --  The last client of all only receives the status that there is no room.
 
    type Phase is (Unconnected, Greeting, Joined, Ending, Given_Up);
-   --  Ending: to be closed when it has been told everything. Given_Up: to be
+   --  Ending: to be closed when it has received all records. Given_Up: to be
    --  closed at once, for it does not read.
 
    type Client is record
@@ -44,8 +45,9 @@ is
       Limit    : Nanoseconds := 0;
       Queue    : Bus_Queues.Queue;
    end record;
-   --  Told: the counters that it knows. Last: the latest time that was said.
-   --  Limit: by when it must have said hello, by the clock of the server.
+   --  Told: the counters in its last bus state. Last: the latest time in its
+   --  records. Limit: the time by which it must have sent hello, by the clock
+   --  of the server.
 
    type Profile is record
       Name    : Bus_Names.Bus_Name;
@@ -54,15 +56,16 @@ is
       Began   : Nanoseconds := 0;
       Restart : Restart_Delay := 0;
    end record;
-   --  What a bus says of itself. Rates in bit/s; without a data rate it
-   --  carries no FD frames. Began: when bus time 0 was, in ns since 1970; 0
-   --  in virtual time. Restart: of the nodes that want none of their own.
+   --  The properties of a bus. Rates are in bit/s; without a data rate the bus
+   --  carries no FD frames. Began: the time of bus time 0 in ns since 1970; 0
+   --  in virtual time. Restart: the restart delay of nodes that request none
+   --  of their own.
 
    function Suits (R : Bus_Records.Request; P : Profile) return Boolean
    is ((R.Nominal = 0 or else R.Nominal = P.Nominal)
        and then (R.Data = 0 or else R.Data = P.Data))
    with Global => null;
-   --  Does this bus have the rates that a hello wants?
+   --  Does this bus have the rates of a hello?
 
    function Knows
      (To : Client; Node : Fault_Confinement.Node) return Boolean
@@ -72,7 +75,7 @@ is
          Fault_Confinement.Receive_Errors (To.Told)
          = Fault_Confinement.Receive_Errors (Node))
    with Global => null;
-   --  Does the client know the counters of its node as they are?
+   --  Does the client know the present counters of its node?
 
    function Time_Heard
      (To     : Client;
@@ -80,8 +83,8 @@ is
       Result : Buses.Outcome;
       Fault  : Bus_Faults.Fault) return Nanoseconds
    with Global => null, Post => Time_Heard'Result >= To.Last;
-   --  When client C is told of what happened: at its end, or as late as the
-   --  fault makes it, and not before what it was told last.
+   --  The time of the record of Result for client C: the end of Result, or
+   --  later by the fault, and not before its last record.
 
    function Restart_For
      (R : Bus_Records.Request; P : Profile) return Restart_Delay
@@ -91,22 +94,22 @@ is
    with
      Global => null,
      Pre    => R.Number <= Bus_Records.Longest_Restart;
-   --  The restart delay of a node that said this hello.
+   --  The restart delay of the node of a hello.
 
    procedure Welcome (To : in out Client; Limit : Nanoseconds)
    with Global => null, Post => To.State = Greeting;
-   --  It has connected, and has to say hello until then.
+   --  The client has connected, and has to send hello by Limit.
 
    procedure Forget (To : in out Client)
    with Global => null, Post => To.State = Unconnected;
-   --  Its connection is gone.
+   --  The connection of the client has ended.
 
    procedure End_With (To : in out Client; Why : Bus_Records.Status)
    with
      Global => null,
      Post   =>
        To.State in Ending | Given_Up and then To.Last = To.Last'Old;
-   --  Say why, and close.
+   --  Send the status Why, and close.
 
    procedure Greet
      (To    : in out Client;
@@ -126,8 +129,8 @@ is
          (if Joins
           then To.State in Joined | Given_Up and then To.Last = Now
           else To.State in Ending | Given_Up);
-   --  The first thing that client C has said. Joins: it gets a controller,
-   --  whose counters are 0.
+   --  Handle the first record of client C. Joins: it gets a controller, whose
+   --  counters are 0.
 
    procedure Refuse
      (To     : in out Client;
@@ -137,12 +140,12 @@ is
      Global => null,
      Post   =>
        To.State in To.State'Old | Given_Up and then To.Last = To.Last'Old;
-   --  This request is not done.
+   --  Refuse this request.
 
    procedure Refuse_All
      (To : in out Client; B : Transmit_Buffers.Buffer)
    with Global => null, Post => To.Last = To.Last'Old;
-   --  None of what is there is done, for the node is bus-off.
+   --  Refuse all requests in B, for the node is bus-off.
 
    procedure Tell_Frame
      (To     : in out Client;
@@ -151,8 +154,8 @@ is
       Tag    : Interfaces.Unsigned_32;
       Fault  : Bus_Faults.Fault)
    with Global => null, Post => To.Last >= To.Last'Old;
-   --  Client C is told of a frame, if it was sent or heard there. Tag: of the
-   --  request that is done; 0 when it was none.
+   --  Send the record of a frame to client C, if the frame was sent or
+   --  received there. Tag: the request that is done; 0 when it was none.
 
    function Report
      (Kind : Error_Frames.Error_Kind; Now : Nanoseconds)
@@ -161,13 +164,13 @@ is
        then Bus_Records.Error_Report (16#20#, 0, Now)
        else Bus_Records.Error_Report (16#08#, 16#1_0000#, Now))
    with Global => null;
-   --  An error frame, as in Linux's can/error.h: nobody acknowledged, or a
-   --  bit error.
+   --  An error frame, as in Linux's can/error.h: no acknowledgement, or a bit
+   --  error.
 
    procedure Tell_Error
      (To : in out Client; Kind : Error_Frames.Error_Kind)
    with Global => null, Post => To.Last = To.Last'Old;
-   --  An error frame was seen.
+   --  Send the record of an error frame.
 
    procedure Tell_State
      (To : in out Client; Node : Fault_Confinement.Node)
@@ -175,24 +178,25 @@ is
      Global => null,
      Post   =>
        To.State in To.State'Old | Given_Up and then To.Last = To.Last'Old;
-   --  These are its counters now.
+   --  Send the present counters.
 
    function Has_Due (To : Client; Now : Nanoseconds) return Boolean
    is (To.Queue.Count > 0
        and then Bus_Queues.Item (To.Queue, 1).Due <= Now)
    with Global => null;
-   --  Is there something to hand over?
+   --  Is a record due?
 
    procedure Hand_Over
      (To : in out Client; Bytes : out Bus_Records.Image)
    with Global => null, Pre => To.Queue.Count > 0;
-   --  The next record.
+   --  Take the next record.
 
    function Next_Due (To : Client) return Nanoseconds
    is (if To.Queue.Count > 0
        then Bus_Queues.Item (To.Queue, 1).Due
        else Nanoseconds'Last)
    with Global => null;
-   --  When something is to be handed over; the last of all times if never.
+   --  The time at which the next record is due; the last of all times if there
+   --  is none.
 
 end Ravenchart.Can.Bus_Clients;

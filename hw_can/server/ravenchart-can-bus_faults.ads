@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What can go wrong with one frame of the simulated bus, on demand.
+--  The faults that can be injected into one frame of the simulated bus.
 --
 --  Guarantees   without a fault, a frame arrives as it was sent, once and
 --               at once
@@ -29,17 +29,17 @@ is
       Delayed,
       Duplicated,
       Corrupted);
-   --  Disturbed_Bit: a bit is read other than it was sent. Disturbed_End:
-   --  one of the end of frame or of the intermission is. Overload: a receiver
-   --  needs a delay of the next frame.
-   --  Lost_Acknowledgement: the transmitter reads its slot recessive. The
-   --  others are faults of a receiver, which the bus does not notice: the
-   --  frame is lost, handed over late, or twice, or with changed data.
+   --  Disturbed_Bit: a bit is read with the opposite level. Disturbed_End: the
+   --  same for a bit of the end of frame or of the intermission. Overload: a
+   --  receiver needs a delay of the next frame. Lost_Acknowledgement: the
+   --  transmitter reads the acknowledgement slot recessive. The others are
+   --  faults of a receiver, which the bus does not notice: the frame is lost,
+   --  handed over late, or twice, or with changed data.
 
    Everyone : constant := 0;
 
    subtype Victim is Natural range 0 .. 255;
-   --  Everyone, or a node.
+   --  All nodes, or one.
 
    type Fault is record
       Kind     : Fault_Kind := None;
@@ -49,12 +49,12 @@ is
       Index    : Fd_Frames.Fd_Index := 0;
       Mask     : Interfaces.Unsigned_8 := 0;
    end record;
-   --  Node: who is hit. Position of a disturbed bit: the bit, which is the
-   --  last of the end of frame when the frame has fewer; of a disturbed end:
-   --  the bit, counted from the first of the end of frame, where 8 to 10 are
-   --  the intermission; of an overload: how many overload frames. Late: by
-   --  how much it is handed over. Index, Mask: the byte and the bits of it
-   --  that change.
+   --  Node: the node with the fault. Position of a disturbed bit: the bit, or
+   --  the last of the end of frame when the frame has fewer. Position of a
+   --  disturbed end: the bit, counted from the first of the end of frame; 8 to
+   --  10 are the intermission. Position of an overload: the number of overload
+   --  frames. Late: the delay. Index, Mask: the byte that changes, and its
+   --  bits.
 
    No_Fault : constant Fault := (others => <>);
 
@@ -62,14 +62,14 @@ is
    is (F.Kind in Disturbed_Bit | Disturbed_End
        and then F.Node = Node)
    with Global => null;
-   --  Is Node the only one that sees the disturbed bit?
+   --  Is Node the only one that reads the disturbed bit?
 
    function Hits (F : Fault; Kind : Fault_Kind; Node : Positive)
      return Boolean
    is (F.Kind = Kind
        and then (F.Node = Everyone or else F.Node = Node))
    with Global => null;
-   --  Does F do this to Node?
+   --  Does F have this effect on Node?
 
    subtype Copies is Natural range 0 .. 2;
 
@@ -78,12 +78,12 @@ is
        elsif Hits (F, Duplicated, Node) then 2
        else 1)
    with Global => null;
-   --  How often Node gets the frame that it has heard.
+   --  How often Node receives the frame.
 
    function Lateness (F : Fault; Node : Positive) return Nanoseconds
    is (if Hits (F, Delayed, Node) then F.Late else 0)
    with Global => null;
-   --  How much later than its end.
+   --  The delay of the frame behind its end.
 
    function As_Heard
      (F : Fault; Node : Positive; Frame : Bus_Frames.Bus_Frame)
@@ -93,6 +93,6 @@ is
      Post   =>
        (if not Hits (F, Corrupted, Node)
         then As_Heard'Result = Frame);
-   --  What Node takes Frame for.
+   --  The frame that Node receives for Frame.
 
 end Ravenchart.Can.Bus_Faults;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What a bus is called.
+--  The name of a bus.
 --
 --  Guarantees   a name is one that a welcome can carry
 --  Tasking      none
@@ -20,14 +20,14 @@ is
      Global => null,
      Post   =>
        Text'Result'First = 1 and then Bus_Records.Is_Name (Text'Result);
-   --  The name as it is written.
+   --  The characters of the name.
 
    function Named (Text : String) return Bus_Name
    with
      Global => null,
      Pre    => Bus_Records.Is_Name (Text),
      Post   => Bus_Names.Text (Named'Result) = Text;
-   --  The name that is written so.
+   --  The name with these characters.
 
 private
 

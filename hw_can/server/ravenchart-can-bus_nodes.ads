@@ -2,10 +2,10 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  One controller on the simulated bus, without its buffers: its error
---  counters, and when it may send.
+--  counters, and the time from which it may send.
 --
 --  Guarantees   a node that is bus-off takes no part; after its recovery was
---               requested, it comes back as Fault_Confinement says
+--               requested, it returns as Fault_Confinement states
 --  Tasking      none: nodes are values
 --  Timing       Rest: at most 1408 steps
 
@@ -23,7 +23,7 @@ is
    --  An absent node has no controller on the bus.
 
    type Recovery is (Waits, Recovers);
-   --  Has a node that is bus-off been told to come back?
+   --  Was recovery requested for a node that is bus-off?
 
    subtype Restart_Delay is Nanoseconds range 0 .. 600_000_000_000;
    --  From bus-off to the automatic request for recovery; 0 for none.
@@ -36,10 +36,10 @@ is
       Ready_At    : Nanoseconds := 0;
       Restart     : Restart_Delay := 0;
    end record;
-   --  It sends nothing before Ready_At: an error-passive node waits for
-   --  eight bits behind what it sent (suspend transmission). While it is
-   --  bus-off, Ready_At is when recovery is requested: it counts no bit
-   --  before.
+   --  The node sends nothing before Ready_At: an error-passive node waits for
+   --  eight bits after its own frame (suspend transmission). While the node is
+   --  bus-off, Ready_At is the time of the request for recovery: it counts no
+   --  bit before.
 
    type Node_List is array (Node_Index) of Bus_Node;
 
@@ -62,7 +62,7 @@ is
        and then A.Ready_At = B.Ready_At
        and then A.Restart = B.Restart)
    with Global => null;
-   --  Do they differ in what was counted alone?
+   --  Do they differ only in their counts?
 
    procedure Count
      (N : in out Bus_Node; Event : Fault_Confinement.Fault_Event)
@@ -77,8 +77,8 @@ is
                         | Fault_Confinement.Transmitter_Flag_Error
                         | Fault_Confinement.Transmitter_Held_Dominant
           then Takes_Part (N));
-   --  One event of fault confinement. A receiver never becomes bus-off. Who
-   --  does, waits to be told to come back.
+   --  One event of fault confinement. A receiver never becomes bus-off. A node
+   --  that does waits for a request for recovery.
 
    procedure Request_Recovery (N : in out Bus_Node; Start : Nanoseconds)
    with
@@ -93,7 +93,7 @@ is
           then Comes_Back (N) and then N.Ready_At <= Start
           else N = N'Old);
    --  The user requests recovery as of Start (ISO 11898-1 (2015), bus
-   --  integration). A request that is already counting goes on.
+   --  integration). A recovery that is already counting continues.
 
    function Quiet_Bits
      (N    : Bus_Node;
@@ -104,20 +104,20 @@ is
        then 0
        else Nanoseconds'Min (Most, (Last - N.Ready_At) / Bit))
    with Global => null;
-   --  Of so many recessive bits up to Last, those after the request.
+   --  The recessive bits after the request, of Most such bits up to Last.
 
    procedure Rest (N : in out Bus_Node; Bits : Nanoseconds)
    with
      Global => null,
      Post   => Is_Same_But_Counts (N, N'Old)
        and then (if not Comes_Back (N'Old) then N = N'Old);
-   --  So many recessive bits in a row, on the way back.
+   --  Count so many recessive bits in a row, during recovery.
 
    procedure Interrupt (N : in out Bus_Node)
    with
      Global => null,
      Post   => Is_Same_But_Counts (N, N'Old)
        and then (if not Comes_Back (N'Old) then N = N'Old);
-   --  A dominant bit, on the way back.
+   --  Count a dominant bit, during recovery.
 
 end Ravenchart.Can.Bus_Nodes;

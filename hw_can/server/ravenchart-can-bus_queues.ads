@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What is still to be handed over to one client of the bus server.
+--  The records that wait for one client of the bus server.
 --
---  Guarantees   first in, first out; nothing else moves or is lost
+--  Guarantees   first in, first out; no other record moves or is lost
 --  Tasking      none: one owner for each Queue
 --  Timing       constant
 
@@ -13,7 +13,7 @@ package Ravenchart.Can.Bus_Queues
   with SPARK_Mode, Pure
 is
    pragma Assertion_Policy (Post => Ignore);
-   --  The queue would be copied, and compared, for each record.
+   --  A check would copy and compare the queue for each record.
 
    Depth : constant := 4_096;
    --  Records that may wait for one client.
@@ -35,15 +35,14 @@ is
       Count : Waiting_Count := 0;
       Ring  : Outgoing_List;
    end record;
-   --  First is the place of the head; behind the last place comes place 1.
+   --  First is the place of the head; place 1 follows the last place.
 
    function Place (Q : Queue; Index : Waiting_Index) return Waiting_Index
    is (if Q.First - 1 <= Depth - Index
        then Q.First - 1 + Index
        else Q.First - 1 + Index - Depth)
    with Global => null;
-   --  Where in the ring the record stands that is so far behind; the head is
-   --  1.
+   --  The place in the ring of record Index, counted from the head as 1.
 
    function Item (Q : Queue; Index : Waiting_Index) return Outgoing
    is (Q.Ring (Place (Q, Index)))
@@ -69,10 +68,10 @@ is
        Q.Count = Q.Count'Old - 1
        and then
          (for all I in 1 .. Q.Count => Item (Q, I) = Item (Q'Old, I + 1));
-   --  The head was handed over.
+   --  Remove the head, which was handed over.
 
    procedure Clear (Q : in out Queue)
    with Global => null, Post => Q.Count = 0;
-   --  Nothing is to be handed over any more.
+   --  Remove all records.
 
 end Ravenchart.Can.Bus_Queues;

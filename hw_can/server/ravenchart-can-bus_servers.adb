@@ -18,18 +18,19 @@ is
    function Is_Due (A : Agenda; Now : Nanoseconds) return Boolean
    is (A.Next <= A.Count and then A.Events (A.Next).Start <= Now)
    with Global => null;
-   --  Does something happen to the line by then?
+   --  Is an event of the line due by then?
 
    function First (A : Agenda; Begun : Nanoseconds) return Nanoseconds
    is (if Is_Due (A, Begun) then A.Events (A.Next).Start else Begun)
    with Global => null;
-   --  When something happens to the line, or at Begun if nothing does before.
+   --  The time of the next event of the line, if it is due by Begun; else
+   --  Begun.
 
    procedure Apply_Next (N : in out Networks.Network; A : in out Agenda)
    with
      Global => null,
      Pre    => A.Next <= A.Count;
-   --  The next event happens to the line.
+   --  Apply the next event to the line.
 
    function Holds
      (B : Transmit_Buffers.Buffer; Tag : Interfaces.Unsigned_32)
@@ -37,7 +38,7 @@ is
    is (for some I in 1 .. Transmit_Buffers.Count (B) =>
          Transmit_Buffers.Item (B, I).Tag = Tag)
    with Global => null;
-   --  Is a request of this number still to be sent?
+   --  Is a request with this number still to be sent?
 
    function Is_Witness
      (N : Networks.Network; C : Node_Index; Result : Buses.Outcome)
@@ -45,7 +46,7 @@ is
    is (Result.Ended = Buses.Broken
        and then N.Bus.Nodes (C).Segment = N.Bus.Nodes (Result.Winner).Segment)
    with Global => null;
-   --  Did node C see an error frame?
+   --  Was there an error frame on the bus of node C?
 
    procedure Ask
      (To  : in out Bus_Clients.Client;
@@ -54,7 +55,7 @@ is
       R   : Bus_Records.Request;
       Now : Nanoseconds)
    with Global => null;
-   --  Client C asks for a frame to be sent.
+   --  Client C requests to send a frame.
 
    procedure Publish
      (To      : in out Bus_Clients.Client;
@@ -64,12 +65,12 @@ is
       Receipt : Networks.Receipt;
       Fault   : Bus_Faults.Fault)
    with Global => null;
-   --  What client C is told of what happened on the bus. When it is bus-off,
-   --  what it had asked for is refused.
+   --  Send client C the records of Result. When its node is bus-off, refuse
+   --  its open requests.
 
    procedure Write_Down (Log : in out Journal; Result : Buses.Outcome)
    with Global => null;
-   --  Keep what was on the bus: a frame that somebody took, an error frame.
+   --  Keep the record of a frame that a node received, or of an error frame.
 
    procedure Carry
      (Clients : in out Client_List;
@@ -81,7 +82,7 @@ is
      Global => null,
      Pre    =>
        M.Start in N.Bus.Free_At (M.Segment) .. Buses.Last_Start;
-   --  What begins on the bus at M, and who is told of it.
+   --  Carry out what begins on the bus at M, and send the records of it.
 
    ----------------
    -- Apply_Next --

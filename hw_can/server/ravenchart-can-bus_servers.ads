@@ -1,12 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The bus server without its sockets: what each client has said, what comes
---  of it on the bus, and what is to be said to whom, and when.
+--  The bus server without its sockets: it takes the records of the clients,
+--  carries their requests out on the bus, and has the records for each client
+--  with their times.
 --
---  Guarantees   each request is answered once, by a confirmation or a
---               refusal; records for one client never go back in time; a
---               client that does not read is given up, and nobody waits
+--  Guarantees   each request is answered once, by a confirmation or a refusal;
+--               records for one client never go back in time. A client that
+--               does not read is given up, and the server never waits for it
 --  Tasking      none: one owner for each Server
 --  Timing       Run: bounded by Steps frames
 
@@ -43,15 +44,15 @@ is
       Count  : Event_Total := 0;
       Next   : Event_Place := 1;
    end record;
-   --  Events in the order of their times; Next is the first to come, behind
-   --  the last one when none is.
+   --  Events in the order of their times; Next is the next event, or one
+   --  beyond the last when there is none.
 
    type Journal is record
       Kept    : Boolean := False;
       Records : Bus_Queues.Queue;
    end record;
-   --  What was on the bus, if it is kept: a record for each frame and each
-   --  error frame. Run makes at most two a frame.
+   --  The log of the bus, if it is kept: a record for each frame and each
+   --  error frame. Run adds at most two for each frame.
 
    type Server is record
       Clients : Client_List;
@@ -66,10 +67,10 @@ is
    is (for some C in Node_Index =>
          Clients (C).State = Bus_Clients.Unconnected)
    with Global => null;
-   --  May one more connect?
+   --  Can one more client connect?
 
    Hello_Limit : constant Nanoseconds := 2_000_000_000;
-   --  From the connection to hello.
+   --  The longest time from the connection to hello.
 
    procedure Connect
      (Clients : in out Client_List; Clock : Nanoseconds; C : out Node_Index)
@@ -78,8 +79,8 @@ is
      Pre    =>
        Is_Room (Clients) and then Clock <= Nanoseconds'Last - Hello_Limit,
      Post   => Clients (C).State = Bus_Clients.Greeting;
-   --  Somebody has connected, and is client C from now on. The Clock is not
-   --  that of the bus, whose time may stand still.
+   --  A client has connected and has the number C. Clock is not bus time,
+   --  which may stand still.
 
    procedure Expire (Clients : in out Client_List; Clock : Nanoseconds)
    with
@@ -88,13 +89,13 @@ is
        (for all C in Node_Index =>
           (if Clients (C).State = Bus_Clients.Greeting
            then Clock < Clients (C).Limit));
-   --  The connection of a client that has not said hello in time ends.
+   --  End the connections of clients that have not sent hello in time.
 
    procedure Disconnect (S : in out Server; C : Node_Index)
    with
      Global => null,
      Post   => S.Clients (C).State = Bus_Clients.Unconnected;
-   --  Its connection is gone: it has left the bus.
+   --  The connection of C has ended: it has left the bus.
 
    procedure Take
      (S     : in out Server;
@@ -102,30 +103,31 @@ is
       Bytes : Bus_Records.Image;
       Now   : Nanoseconds)
    with Global => null;
-   --  A record came from C.
+   --  A record of C has come.
 
    function Is_Virtual (S : Server) return Boolean
    is (S.Profile.Began = 0)
    with Global => null;
-   --  Does time go on only when something happens on the bus?
+   --  Does time advance only with events on the bus?
 
    function Latest (S : Server) return Nanoseconds
    is (if S.Net.Bus.Free_At (1) < S.Net.Bus.Free_At (2)
        then S.Net.Bus.Free_At (2) else S.Net.Bus.Free_At (1))
    with Global => null;
-   --  Until when the bus was busy last.
+   --  The end of the last activity on the bus.
 
    procedure Run (S : in out Server; Horizon : Nanoseconds; Busy : out Boolean)
    with Global => null;
-   --  Everything that begins on the bus until then; Busy when that is not
-   --  all yet. The journal should be empty before.
+   --  Carry out everything that begins on the bus until Horizon; Busy when not
+   --  all of it is done yet. The journal should be empty before.
 
    procedure Close_All (Clients : in out Client_List)
    with Global => null;
-   --  The server ends: everyone is told.
+   --  The server ends: send all clients the status.
 
    function Next_Start (S : Server) return Nanoseconds
    with Global => null;
-   --  When something happens by itself; the last of all times if never.
+   --  The time of the next event on the bus; the last of all times if there is
+   --  none.
 
 end Ravenchart.Can.Bus_Servers;

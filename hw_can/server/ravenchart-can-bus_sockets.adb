@@ -13,12 +13,12 @@ package body Ravenchart.Can.Bus_Sockets is
    use type Ada.Streams.Stream_Element_Offset;
 
    Send_Bytes : constant := 65_536;
-   --  Room in the kernel for what a client has still to read.
+   --  Room in the kernel for records that a client has still to read.
 
    subtype Offset is Ada.Streams.Stream_Element_Offset;
 
    Chunk : constant Offset := 64 * Bus_Records.Record_Bytes;
-   --  Bytes that are read, or written, at once.
+   --  Bytes of one read or write.
 
    type Link is record
       Socket : GNAT.Sockets.Socket_Type := GNAT.Sockets.No_Socket;
@@ -29,15 +29,14 @@ package body Ravenchart.Can.Bus_Sockets is
       Sent   : Offset := 0;
       Filled : Offset := 0;
    end record;
-   --  Of Input, the bytes up to Read are there, and those up to Taken were
-   --  taken. Of Output, those up to Filled are to be written, and those up
-   --  to Sent were.
+   --  Input holds bytes up to Read, of which those up to Taken were taken.
+   --  Output holds bytes up to Filled, of which those up to Sent were sent.
 
    Links    : array (Node_Index) of Link;
    Server   : GNAT.Sockets.Socket_Type;
    Selector : GNAT.Sockets.Selector_Type;
    Readable : GNAT.Sockets.Socket_Set_Type;
-   --  Whose input the last Await has seen.
+   --  The clients with input, as the last Await saw them.
    Start    : Ada.Real_Time.Time;
 
    Signalled : Boolean := False
@@ -61,7 +60,7 @@ package body Ravenchart.Can.Bus_Sockets is
    with Import, Convention => C, External_Name => "clock_gettime";
 
    procedure Set_Up (Socket : GNAT.Sockets.Socket_Type);
-   --  It never blocks, and delays nothing.
+   --  Set the socket to non-blocking and to send without delay.
 
    ---------------
    -- On_Signal --
@@ -200,7 +199,7 @@ package body Ravenchart.Can.Bus_Sockets is
       Set_Up (L.Socket);
    exception
       when GNAT.Sockets.Socket_Error =>
-         null;  --  gone before it was here: it never says hello
+         null;  --  disconnected before it was accepted: it never sends hello
    end Welcome;
 
    -------------

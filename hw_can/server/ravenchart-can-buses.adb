@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
-with Ravenchart.Can.Buses.Rulings;
+with Ravenchart.Can.Buses.Frame_Outcomes;
 with Ravenchart.Can.Fault_Confinement;
 
 package body Ravenchart.Can.Buses
   with SPARK_Mode
 is
-   use Rulings;
+   use Frame_Outcomes;
    use type Bus_Frames.Frame_Family;
    use type Error_Frames.Error_Flag;
    use type Error_Frames.Error_Frame;
@@ -17,15 +17,15 @@ is
    --  error, to the end of the intermission.
 
    Passive_Flag : constant := 6;
-   --  Recessive bits more.
+   --  The recessive bits of a passive error flag.
 
    Intermission : constant := 3;
 
    Suspended : constant := 8;
-   --  Suspend transmission.
+   --  The bits of suspend transmission.
 
    Held_Period : constant := 8;
-   --  Dominant bits after which a node counts again.
+   --  Dominant bits after which a node increments its counter again.
 
    procedure Conclude
      (B     : in out Bus;
@@ -44,9 +44,9 @@ is
          (for all N in Node_Index =>
             (if B.Nodes'Old (N).Segment /= S and then Roles (N) = Outside
              then B.Nodes (N) = B.Nodes'Old (N)));
-   --  What is left to do when the segment is free: passive senders wait, and
-   --  bus-off nodes have heard so many recessive bits, behind dominant ones
-   --  where it was Noisy.
+   --  End the activity when the segment is free. Error-passive senders suspend
+   --  transmission. Bus-off nodes count Quiet recessive bits, after dominant
+   --  ones where Noisy.
 
    procedure Carry
      (B      : in out Bus;
@@ -88,7 +88,7 @@ is
                     and then
                       not Bus_Faults.Is_Witness (Fault, Positive (N))
                   then Result.Heard (N))));
-   --  The frame of the winner on a sound line.
+   --  Transmit the frame of the winner on a sound line.
 
    procedure False_Start
      (B : in out Bus; S : Segment; Now : Start_Time; Roles : Role_List)
@@ -97,8 +97,8 @@ is
      Pre    => B.Free_At (S) = Now and then Fits (Roles, B, S),
      Post   =>
        Is_Same_Beyond (B, B'Old, S) and then Now <= B.Free_At (S);
-   --  A start of frame, and then nobody sends: the sixth recessive bit behind
-   --  it is a stuff error for everyone.
+   --  A start of frame without a frame: the sixth recessive bit after it is a
+   --  stuff error for all nodes.
 
    procedure Hold (B : in out Bus; S : Segment; Now : Start_Time)
    with
@@ -106,8 +106,8 @@ is
      Pre    => B.Free_At (S) = Now,
      Post   =>
        Is_Same_Beyond (B, B'Old, S) and then Now <= B.Free_At (S);
-   --  A dominant bus: whoever begins to send loses arbitration, so that all
-   --  are receivers, and count.
+   --  A dominant bus: each node that begins to send loses arbitration, so that
+   --  all are receivers, and count.
 
    procedure Fail
      (B      : in out Bus;
@@ -133,8 +133,8 @@ is
          (if Result.Ended /= Silence
           then Contends (B'Old, Result.Winner, S, Now, Offers)
             and then Offers (Result.Winner).Frame = Result.Frame);
-   --  A recessive bus: whoever begins to send reads its first bit back as
-   --  another, and the bits of its flag as well.
+   --  A recessive bus: each node that begins to send reads its first bit back
+   --  as recessive, and the bits of its error flag as well.
 
    ----------
    -- Pass --
@@ -237,7 +237,7 @@ is
       Before : constant Node_List := B.Nodes with Ghost;
       Frame  : constant Bus_Frames.Bus_Frame := Offers (Winner).Frame;
       Image  : constant Wire.Image := Bus_Frames.Image_Of (Frame);
-      Found  : Trouble;
+      Found  : Disturbance;
       After  : Aftermath;
    begin
       pragma Assert
@@ -271,7 +271,7 @@ is
       end if;
 
       Find (B, Offers, Roles, Winner, Fault, Image, Found);
-      if Found.Kind = Untroubled then
+      if Found.Kind = Undisturbed then
          Result.Ended  := Whole;
          Result.Struck := Now;
          After := Behind (Roles, Fault, Image);
@@ -305,10 +305,10 @@ is
             and then Result.Finish <= B.Free_At (S));
       end if;
       B.Called (S) := After.Called;
-      Judge
+      Count_Outcome
         (B.Nodes, Roles, Fault, Found, Result.Sent, Result.Heard);
-      if After.Misled then
-         Mislead (B.Nodes, Roles, But => Fault.Node);
+      if After.False_Start then
+         Count_Stuff_Error (B.Nodes, Roles, But => Fault.Node);
       end if;
       pragma Assert
         (for all N in Node_Index =>
@@ -322,7 +322,7 @@ is
             then Result.Heard (N)));
       Conclude
         (B, S, Roles,
-         (if Found.Kind /= Untroubled
+         (if Found.Kind /= Undisturbed
             and then Result.Error.Flag = Error_Frames.Passive_Flag
           then Passive_Flag + After_Dominant
           elsif After.Called
@@ -346,7 +346,7 @@ is
         + (Stuff_Error + Nanoseconds (Error_Frames.Length (Frame))
            + Intermission)
           * B.Times.Nominal;
-      Mislead (B.Nodes, Roles, But => 0);
+      Count_Stuff_Error (B.Nodes, Roles, But => 0);
       Conclude (B, S, Roles, After_Dominant, Noisy => True);
    end False_Start;
 
@@ -453,7 +453,7 @@ is
         (Start => Now, Finish => Now, Struck => Now, others => <>);
       case B.Line is
          when Sound          =>
-            Settle (B, S, Now, Offers, Roles, Winner, Begun);
+            Arbitrate (B, S, Now, Offers, Roles, Winner, Begun);
             if Begun then
                Carry (B, S, Now, Offers, Fault, Roles, Winner, Result);
             elsif B.Called (S) then

@@ -1,19 +1,19 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A bus in virtual time: who is on it, what becomes of the frames that are
---  offered at one instant, and what it does to everyone's error counters.
+--  A bus in virtual time: its nodes, the outcome of the frames that are
+--  offered at one instant, and their effect on all error counters.
 --
---  Guarantees   time never goes back; what is heard, and what is sent, is
---               the frame of the winner, and no other offer precedes it; a
---               frame that is sent was offered; nobody hears its own frame
+--  Guarantees   time never goes back. The frame that is received and sent is
+--               that of the winner, and no other offer precedes it. A frame
+--               that is sent was offered; no node receives its own frame
 --  Tasking      none: one owner for each Bus
 --  Timing       linear in the length of a frame and in the nodes
 --
 --  ISO 11898-1 (2015): arbitration, acknowledgement, error signalling and
---  fault confinement; bits are synchronous at all nodes. A cut divides the
---  bus into segments, each with its own time. Simpler than the standard: an
---  error flag or overload flag is not sent again when it is disturbed.
+--  fault confinement; bits are synchronous at all nodes. A cut divides the bus
+--  into segments, each with its own time. Simpler than the standard: an error
+--  flag or overload flag is not sent again when it is disturbed.
 
 with Ravenchart.Can.Bus_Faults;
 with Ravenchart.Can.Bus_Frames;
@@ -29,14 +29,14 @@ is
    use type Bus_Frames.Bus_Frame;
 
    type Line_State is (Sound, Held_Dominant, Held_Recessive);
-   --  Held: shorted, so that nobody's other level gets through.
+   --  Held: shorted, so that no node can drive the other level.
 
    subtype Segment is Node_Index;
-   --  A part of the bus that is connected; all are in segment 1 at first.
+   --  A connected part of the bus; at first all nodes are in segment 1.
 
    Last_Start : constant Nanoseconds :=
      Nanoseconds'Last - 4 * Bus_Frames.Longest_Time;
-   --  No frame begins later.
+   --  The last instant at which a frame can begin.
 
    subtype Start_Time is Nanoseconds range 0 .. Last_Start;
 
@@ -52,7 +52,7 @@ is
       Nodes   : Node_List;
    end record;
    --  A segment is busy, intermission included, until Free_At. Called: at
-   --  Free_At, the third bit of the intermission, everyone reads a dominant
+   --  Free_At, the third bit of the intermission, all nodes read a dominant
    --  bit, which is a start of frame.
 
    type Offer is record
@@ -84,7 +84,8 @@ is
    --  Does N start to send there at that time?
 
    type Ending is (Silence, Whole, Broken);
-   --  Nobody sent; the frame came to its end, or to an error frame.
+   --  Silence: no node sent. Whole: the frame was completed. Broken: the frame
+   --  ended in an error frame.
 
    subtype Overload_Count is Natural range 0 .. 2;
    --  At most two overload frames delay the next frame.
@@ -102,12 +103,13 @@ is
       Error    : Error_Frames.Error_Frame;
       Overload : Overload_Count := 0;
    end record;
-   --  Finish is the end of the frame, before the intermission. Sent: whose
-   --  offer is done. Heard: who has received Frame. Position, Struck and
-   --  Error, when Broken: behind which bit the error frame begins, and when.
-   --  Overload: the overload frames behind a Whole frame. A receiver takes a
-   --  frame as valid one bit before its transmitter: so a frame that ended in
-   --  an error frame may have been heard.
+   --  Finish is the end of the frame, before the intermission. Sent: the nodes
+   --  whose offer is done. Heard: the nodes that have received Frame.
+   --  Position, Struck and Error, when Broken: the bit after which the error
+   --  frame begins, the time, and the error frame. Overload: the overload
+   --  frames after a Whole frame. For a receiver a frame is valid one bit
+   --  earlier than for its transmitter: so a frame that ended in an error
+   --  frame may have been received.
 
    function Is_Same_Beyond
      (B, Before : Bus; S : Segment) return Boolean
@@ -121,7 +123,7 @@ is
             (if Before.Nodes (N).Segment /= S
              then B.Nodes (N) = Before.Nodes (N))))
    with Ghost, Global => null;
-   --  Is the bus as before, but for segment S and the nodes on it?
+   --  Is the bus unchanged, except for segment S and the nodes on it?
 
    function Is_In_Time
      (Result : Outcome; Now, Free_At : Nanoseconds) return Boolean
@@ -151,8 +153,8 @@ is
          (for all N in Node_Index =>
             (if not Comes_Back (B.Nodes'Old (N))
              then B.Nodes (N) = B.Nodes'Old (N)));
-   --  The segment was idle up to now: nodes that are bus-off and shall come
-   --  back have counted its recessive bits.
+   --  The segment was idle up to Now: bus-off nodes in recovery have counted
+   --  its recessive bits.
 
    procedure Recover (B : in out Bus; N : Node_Index; Now : Nanoseconds)
    with
@@ -165,7 +167,7 @@ is
          (for all M in Node_Index =>
             (if M /= N then B.Nodes (M) = B.Nodes'Old (M)));
    --  The user of node N requests recovery from bus-off. The node counts the
-   --  recessive bits behind Now: those of an idle bus before count nothing,
+   --  recessive bits after Now: those of an idle bus before do not count,
    --  those at the end of a frame that is being sent do.
 
    procedure Contest
@@ -210,6 +212,6 @@ is
             (for all N in Node_Index =>
                (if Contends (B'Old, N, S, Now, Offers)
                 then Bus_Frames.Is_First (Result.Frame, Offers (N).Frame))));
-   --  Everyone on segment S who has something to send starts at that time.
+   --  All nodes on segment S that have a frame to send start at that time.
 
 end Ravenchart.Can.Buses;

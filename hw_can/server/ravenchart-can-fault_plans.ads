@@ -1,12 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Which frame of a run meets which fault: as a list says, or by chance from
---  a seed, so that the same run comes again.
+--  The frames of a run and their faults: from a list, or by chance from a
+--  seed, so that the same run can be repeated.
 --
---  Guarantees   each fault of the list comes once, with the frame that it
---               names; two faults of chance are never closer than the
---               separation
+--  Guarantees   each fault of the list occurs once, with the frame that it
+--               names; two random faults are never closer than the separation
 --  Tasking      none: one owner for each Plan
 --  Timing       linear in the list
 
@@ -25,7 +24,8 @@ is
       Frame : Event_Count := 0;
       Fault : Bus_Faults.Fault;
    end record;
-   --  Frames that began, errors included, count from 1.
+   --  The number of a frame, from 1; all frames that began count, also those
+   --  with errors.
 
    subtype Plan_Count is Natural range 0 .. 64;
 
@@ -42,7 +42,7 @@ is
       Not_Before : Nanoseconds := 0;
    end record;
    --  With a Separation above 0, a frame that begins at Not_Before or later
-   --  has a bit disturbed, at a place that the Seed decides.
+   --  has a disturbed bit, at a position that Seed selects.
 
    function Next (Seed : Interfaces.Unsigned_32)
      return Interfaces.Unsigned_32
@@ -53,7 +53,7 @@ is
    function Place (Seed : Interfaces.Unsigned_32) return Wire.Bit_Index
    is (1 + Natural (Interfaces.Shift_Right (Seed, 16) mod 160))
    with Global => null;
-   --  The bit that chance disturbs: anywhere in a classic frame.
+   --  The position of the random bit: anywhere in a classic frame.
 
    function Is_Listed (P : Plan; Frame : Event_Count) return Boolean
    is (for some I in 1 .. P.Count => P.Listed (I).Frame = Frame)
@@ -88,6 +88,7 @@ is
        (if Struck <= Nanoseconds'Last - P.Separation
         then P.Not_Before = Struck + P.Separation
         else P.Not_Before = Nanoseconds'Last);
-   --  An error came then: chance is quiet for a while.
+   --  An error occurred at Struck: no random fault until the separation is
+   --  over.
 
 end Ravenchart.Can.Fault_Plans;

@@ -6,7 +6,7 @@ package body Ravenchart.Can.Line_Events
 is
 
    Upper : constant Node_Index := 2;
-   --  The segment of those above a cut; the others are on segment 1.
+   --  The segment of the nodes above a cut; the others are on segment 1.
 
    procedure Divide (N : in out Networks.Network)
    with
@@ -14,7 +14,7 @@ is
      Post   =>
        (for all S in Node_Index =>
           N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
-   --  Both segments go on from the later time of the two.
+   --  Both segments continue from the later time of the two.
 
    ------------
    -- Divide --

@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What is done to the line of a network at given times.
+--  Events of the line of a network at given times.
 --
---  Guarantees   time goes on where the bus is cut or mended
+--  Guarantees   time continues where the bus is cut or mended
 --  Tasking      none: one owner for each Network
 --  Timing       linear in the nodes
 
@@ -20,9 +20,10 @@ is
 
    type Event_Kind is
      (Cut, Mend, Hold_Dominant, Hold_Recessive, Let_Go, Babble, Hush);
-   --  Cut: Node and those above it are apart from those below, until Mend.
-   --  Hold: the line is shorted, until Let_Go. Babble: Node sends Frame
-   --  again and again in place of what it has to send, until Hush.
+   --  Cut: Node and the nodes above it are cut off from those below, until
+   --  Mend. Hold: the line is shorted, until Let_Go. Babble: Node sends Frame
+   --  again and again in place of its own frames, until Hush. The command
+   --  line of the bus server has these names.
 
    type Event is record
       Kind  : Event_Kind := Mend;
@@ -37,7 +38,7 @@ is
      Post   =>
        (for all S in Node_Index =>
           N.Bus.Free_At (S) >= N.Bus.Free_At'Old (S));
-   --  It happens now.
+   --  Apply the event now.
 
    procedure Join (N : in out Networks.Network; I : Node_Index)
    with
@@ -55,6 +56,6 @@ is
        not Takes_Part (N.Bus.Nodes (I))
        and then Networks.Waiting (N, I) = 0
        and then N.Bus.Free_At = N.Bus.Free_At'Old;
-   --  What it had still to send is gone with it.
+   --  The frames that the node had still to send are removed with it.
 
 end Ravenchart.Can.Line_Events;

@@ -15,7 +15,8 @@ is
      Global => null,
      Post   =>
        Start_Of'Result >= N.Bus.Free_At (N.Bus.Nodes (I).Segment);
-   --  When node I does something by itself; the last of all times if never.
+   --  The time of the next action of node I; the last of all times if there is
+   --  none.
 
    --------------
    -- Start_Of --

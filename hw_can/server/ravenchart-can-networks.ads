@@ -1,14 +1,14 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Controllers with their transmit buffers on one simulated bus: what is
---  asked for, and what comes of it.
+--  Controllers with their transmit buffers on one simulated bus: their
+--  requests, and the outcome of these.
 --
---  Guarantees   a frame stays in its buffer until it was sent: who loses
---               arbitration, or meets an error, keeps it; each node offers
---               the head of its buffer; time never goes back
+--  Guarantees   a frame stays in its buffer until it was sent, also after lost
+--               arbitration or an error; each node offers the head of its
+--               buffer; time never goes back
 --  Tasking      none: one owner for each Network
---  Timing       linear in the nodes and in what a buffer holds
+--  Timing       linear in the nodes and in the frames of a buffer
 
 with Interfaces;
 with Ravenchart.Can.Bus_Faults;
@@ -22,7 +22,7 @@ package Ravenchart.Can.Networks
   with SPARK_Mode, Pure
 is
    pragma Assertion_Policy (Post => Ignore);
-   --  All buffers would be copied, and compared, for each frame.
+   --  A check would copy and compare all buffers for each frame.
 
    use Bus_Nodes;
    use type Bus_Frames.Bus_Frame;
@@ -45,19 +45,19 @@ is
       Babble  : Buses.Offer_List;
       Cut_At  : Place_Of_Cut := Nowhere;
    end record;
-   --  From Cut_At upwards, nodes are apart from those below. A node that
-   --  babbles offers that frame in place of its own, for ever.
+   --  The nodes from Cut_At upwards are cut off from those below. A node that
+   --  babbles offers that frame in place of its own, again and again.
 
    function Waiting
      (N : Network; I : Node_Index) return Transmit_Buffers.Slot_Count
    is (Transmit_Buffers.Count (N.Buffers (I)))
    with Global => null;
-   --  How many frames node I has still to send.
+   --  The number of frames that node I has still to send.
 
    function Head (N : Network; I : Node_Index) return Transmit_Buffers.Request
    is (Transmit_Buffers.Item (N.Buffers (I), 1))
    with Global => null, Pre => Waiting (N, I) > 0;
-   --  What node I offers next.
+   --  The next offer of node I.
 
    function Offers (N : Network) return Buses.Offer_List
    with
@@ -72,7 +72,7 @@ is
              and then
                (if Waiting (N, I) > 0
                 then Offers'Result (I).Frame = Head (N, I).Frame)));
-   --  What each node would send.
+   --  The offers of all nodes.
 
    procedure Submit
      (N      : in out Network;
@@ -99,14 +99,14 @@ is
      Post   =>
        Waiting (N, I) = 0
        and then N.Bus = N.Bus'Old;
-   --  Forget all that node I has still to send.
+   --  Remove all frames that node I has still to send.
 
    type Moment is record
       Known   : Boolean := False;
       Segment : Buses.Segment := 1;
       Start   : Nanoseconds := 0;
    end record;
-   --  When something begins, if anything does.
+   --  The time of the next event, if Known.
 
    function Next (N : Network) return Moment
    with
@@ -114,14 +114,15 @@ is
      Post   =>
        (if Next'Result.Known
         then Next'Result.Start >= N.Bus.Free_At (Next'Result.Segment));
-   --  The next thing that happens by itself: a frame begins, a node comes
-   --  back from bus-off, or one counts on a bus that is held dominant.
+   --  The next event: a frame begins, a node comes back from bus-off, or a
+   --  node counts on a bus that is held dominant.
 
    type Receipt is record
       Tag   : Interfaces.Unsigned_32 := 0;
       Since : Nanoseconds := 0;
    end record;
-   --  Of a request that is done: what its owner called it.
+   --  A request that is done: the tag of its owner, and the time of the
+   --  request.
 
    type Receipt_List is array (Node_Index) of Receipt;
 
@@ -148,8 +149,8 @@ is
                and then Result.Frame = Head (N'Old, I).Frame
                and then Receipts (I).Tag = Head (N'Old, I).Tag
              else N.Buffers (I) = N.Buffers'Old (I)));
-   --  What begins at M. A request leaves its buffer when it was sent, and
-   --  nothing else does.
+   --  Carry out the event at M. A request leaves its buffer when it was sent,
+   --  and no other does.
 
    function Is_Held (N : Network; I : Node_Index) return Boolean
    is (N.Bus.Line = Buses.Held_Dominant
@@ -158,6 +159,6 @@ is
          Fault_Confinement.Receive_Errors (N.Bus.Nodes (I).Confinement)
          < Error_Count'Last)
    with Global => null;
-   --  Does a dominant bus still move a counter of node I?
+   --  Does a dominant bus still increment a counter of node I?
 
 end Ravenchart.Can.Networks;

@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The transmit buffer of one controller: what is still to be sent.
+--  The transmit buffer of one controller: the frames still to be sent.
 --
---  Guarantees   a FIFO buffer keeps the order of the requests; in one by
+--  Guarantees   a FIFO buffer keeps the order of the requests. In a buffer by
 --               priority no frame stands behind a less urgent one, and equal
---               ones keep their order; nothing else moves or is lost
+--               ones keep their order. No other frame moves or is lost
 --  Tasking      none: one owner for each Buffer
---  Timing       linear in what is held
+--  Timing       linear in the number of frames
 
 with Interfaces;
 with Ravenchart.Can.Arbitration;
@@ -19,7 +19,7 @@ is
    use type Arbitration.Rank;
 
    type Discipline is (By_Priority, First_In_First_Out);
-   --  Which of its frames a controller offers to the bus.
+   --  The order in which a controller offers its frames to the bus.
 
    Room : constant := 1_024;
    --  Frames that a buffer holds.
@@ -27,43 +27,44 @@ is
    subtype Slot_Count is Natural range 0 .. Room;
 
    subtype Slot_Index is Slot_Count range 1 .. Room;
-   --  Slot 1 is the head: what is offered next.
+   --  Slot 1 is the head: the next offer.
 
    type Request is record
       Frame : Bus_Frames.Bus_Frame;
       Tag   : Interfaces.Unsigned_32 := 0;
       Since : Nanoseconds := 0;
    end record;
-   --  A frame, a number by which its owner knows it, and when it was queued.
+   --  A frame, the number by which its owner knows it, and the time at which
+   --  it was queued.
 
    function Rank_Of (R : Request) return Arbitration.Rank
    is (Arbitration.Rank_Of (Bus_Frames.Contender_Of (R.Frame)))
    with Global => null;
-   --  Its place in arbitration.
+   --  The rank of its frame in arbitration.
 
    type Buffer is private
    with
      Default_Initial_Condition =>
        Order (Buffer) = First_In_First_Out and then Count (Buffer) = 0;
-   --  In a buffer by priority nothing stands behind something less urgent.
+   --  In a buffer by priority no frame stands behind a less urgent one.
 
    function Order (B : Buffer) return Discipline
    with Global => null;
-   --  Which of its frames it offers.
+   --  The order in which it offers its frames.
 
    function Count (B : Buffer) return Slot_Count
    with Global => null;
-   --  How many frames it holds.
+   --  The number of its frames.
 
    function Item (B : Buffer; Index : Slot_Index) return Request
    with Global => null, Pre => Index <= Count (B);
-   --  What is there.
+   --  The frame at Index.
 
    function Rank_At
      (B : Buffer; Index : Slot_Index) return Arbitration.Rank
    is (Rank_Of (Item (B, Index)))
    with Global => null, Pre => Index <= Count (B);
-   --  The place in arbitration of what is there.
+   --  The rank in arbitration of that frame.
 
    procedure Head_Is_First (B : Buffer)
    with
@@ -72,7 +73,7 @@ is
      Pre    => Order (B) = By_Priority,
      Post   =>
        (for all I in 1 .. Count (B) => Rank_At (B, 1) <= Rank_At (B, I));
-   --  What is offered is the most urgent of all.
+   --  The head is the most urgent frame of all.
 
    function Place_For
      (B : Buffer; What : Request) return Slot_Index
@@ -90,7 +91,7 @@ is
             and then
               (for all I in Place_For'Result .. Count (B) =>
                  Rank_At (B, I) > Rank_Of (What)));
-   --  Where it goes: behind all that is as urgent.
+   --  The slot of a new frame: behind all frames that are at least as urgent.
 
    procedure Put (B : in out Buffer; What : Request)
    with
@@ -105,7 +106,7 @@ is
             Item
               (B, (if I < Place_For (B'Old, What) then I else I + 1))
             = Item (B'Old, I));
-   --  Queue it; what was there keeps its order.
+   --  Queue a frame; the others keep their order.
 
    procedure Drop_Head (B : in out Buffer)
    with
@@ -116,20 +117,20 @@ is
        and then Count (B) = Count (B'Old) - 1
        and then
          (for all I in 1 .. Count (B) => Item (B, I) = Item (B'Old, I + 1));
-   --  The head was sent, or is not to be sent.
+   --  Remove the head, which was sent or is withdrawn.
 
    procedure Clear (B : in out Buffer)
    with
      Global => null,
      Post   => Count (B) = 0 and then Order (B) = Order (B'Old);
-   --  Nothing is to be sent any more.
+   --  Remove all frames.
 
    procedure Reset (B : in out Buffer; Order : Discipline)
    with
      Global => null,
      Post   =>
        Count (B) = 0 and then Transmit_Buffers.Order (B) = Order;
-   --  Nothing is to be sent, and what comes is offered in this order.
+   --  Remove all frames, and use this order from here on.
 
 private
 
@@ -143,14 +144,14 @@ private
    with
      Type_Invariant =>
        (if Order = By_Priority then Is_Ordered (Slots, Count));
-   --  What stands beyond Count means nothing.
+   --  Slots beyond Count have no meaning.
 
    function Is_Ordered
      (Slots : Request_List; Count : Slot_Count) return Boolean
    is (for all I in 2 .. Count =>
          Rank_Of (Slots (I - 1)) <= Rank_Of (Slots (I)))
    with Global => null;
-   --  Does nothing urgent stand behind something less urgent?
+   --  Does no frame stand behind a less urgent one?
 
    function Order (B : Buffer) return Discipline
    is (B.Order);

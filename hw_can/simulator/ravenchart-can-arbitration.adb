@@ -13,7 +13,7 @@ is
    with
      Global => null,
      Pre    => I in Contenders'Range;
-   --  What the frame at I has in place P.
+   --  The bit of frame I at place P.
 
    procedure Read_Bus
      (Contenders : Contender_List;
@@ -36,7 +36,8 @@ is
          (for all I in Contenders'Range =>
             (if Lost_In (I) = 0 and then Bus = Levels.Recessive
              then Sends (Contenders, I, P) = Levels.Recessive));
-   --  The wired AND of those that have not lost, and one that sends it.
+   --  The wired AND of the frames that have not lost, and one frame that sends
+   --  it.
 
    procedure Drop_Losers
      (Contenders : Contender_List;
@@ -54,7 +55,7 @@ is
             (if Lost_In'Old (I) = 0
                and then Sends (Contenders, I, P) /= Bus
              then P else Lost_In'Old (I)));
-   --  Who reads another level than it sends has lost.
+   --  A frame that reads another level than it sends has lost.
 
    procedure Ranks_Are_Order (Contenders : Contender_List; First : Contender)
    with

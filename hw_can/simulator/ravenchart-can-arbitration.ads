@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Arbitration: of the frames that start together, which one stays.
+--  Arbitration: finds the frame that stays, of the frames that start together.
 --
---  Guarantees   bit by bit on the bus, the frame that is first in the order
---               of the rules stays, and every other one sees in which place
---               it lost; with no two frames alike exactly one stays
+--  Guarantees   bit by bit on the bus, the frame that is first in the order of
+--               the rules stays, and every other one finds the place at which
+--               it lost. Without two frames that are alike, exactly one stays
 --  Tasking      none: a contest is a value
 --  Timing       linear in the contenders
 --
@@ -24,7 +24,7 @@ is
       Kind   : Frame_Kind := Data;
    end record
    with Predicate => Fits (Id, Format);
-   --  What of a frame takes part; a CAN FD frame is one with Data.
+   --  The part of a frame in arbitration; a CAN FD frame is one with Data.
 
    function Base_Id (C : Contender) return Standard_Identifier
    is (if C.Format = Can.Standard then C.Id else C.Id / 2**18)
@@ -78,7 +78,7 @@ is
    --  The bits on the bus put frames in the order of the rules.
 
    subtype Prefix_Length is Natural range 0 .. 32;
-   --  How many places have been compared.
+   --  The number of places that have been compared.
 
    function Power (N : Prefix_Length) return Long_Long_Integer
    is (case N is
@@ -96,7 +96,7 @@ is
    with
      Ghost,
      Global => null;
-   --  How many numbers so many bits can write.
+   --  The count of numbers with so many bits.
 
    function Prefix (R : Rank; Length : Prefix_Length) return Rank
    with
@@ -109,7 +109,7 @@ is
    function Level_At (R : Rank; P : Place) return Levels.Level
    is (Levels.To_Level (Prefix (R, P) mod 2 = 1))
    with Global => null;
-   --  What the frame sends there.
+   --  The bit that the frame sends there.
 
    type Contender_Index is range 1 .. 256;
    --  Frames that start together.
@@ -117,12 +117,12 @@ is
    type Contender_List is array (Contender_Index range <>) of Contender;
 
    subtype Loss is Natural range 0 .. 32;
-   --  The place in which a frame lost; 0 when it did not.
+   --  The place at which a frame lost; 0 when it did not.
 
    type Loss_List is array (Contender_Index range <>) of Loss;
 
    type Bus_Levels is array (Place) of Levels.Level;
-   --  What everyone reads back.
+   --  The level that all nodes read back.
 
    procedure Arbitrate
      (Contenders : Contender_List;
@@ -150,10 +150,10 @@ is
                and then
                  Level_At (Rank_Of (Contenders (I)), Lost_In (I))
                  = Levels.Recessive));
-   --  Each sends its bits while it reads back what it sends. The winner is
-   --  first in order; with it stay only frames that are alike in all these
-   --  bits, which ISO 11898-1 leaves to the users to rule out. A loser sent a
-   --  recessive bit where it read a dominant one.
+   --  Each frame sends its bits as long as it reads back the bit that it
+   --  sends. The winner is first in order. Only frames that are alike in all
+   --  these bits stay with it, which ISO 11898-1 leaves to the users to rule
+   --  out. A loser sent a recessive bit where it read a dominant one.
 
 private
 

@@ -60,7 +60,7 @@ is
      Post   =>
        With_Zeros (Kind, 1, Width (Kind)) = Polynomial (Kind)
        and then With_Zeros (Kind, 0, Width (Kind)) = 0;
-   --  What one bit adds to the register.
+   --  The change of the register by one bit.
 
    procedure Lemma_Bit (Kind : Crc_Kind; R : Register; Bit : Levels.Level)
    with

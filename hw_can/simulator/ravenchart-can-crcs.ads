@@ -22,10 +22,10 @@ is
    use type Levels.Level;
 
    type Crc_Kind is (Crc_15, Crc_17, Crc_21);
-   --  Named by the width of the sequence.
+   --  The check sequences, named by their width.
 
    subtype Register is Interfaces.Unsigned_32;
-   --  The sequence, in its lowest bits.
+   --  The sequence, in the lowest bits.
 
    function Width (Kind : Crc_Kind) return Positive
    is (case Kind is
@@ -102,8 +102,8 @@ is
 
    --  The definition of ISO 11898-1: the bits, and behind them as many zeros
    --  as the sequence is wide, are the coefficients of a polynomial. The
-   --  sequence is the remainder of its division by the generator, modulo 2.
-   --  In CAN FD the first bit is inverted: so does the one at the start.
+   --  sequence is the remainder of its division by the generator, modulo 2. In
+   --  CAN FD the first bit is inverted: the one at the start does that.
 
    type Bit_Sequence is array (Positive range <>) of Levels.Level
    with Ghost;
@@ -133,7 +133,7 @@ is
      Ghost,
      Global => null,
      Pre    => Place in Bits'Range;
-   --  What the bit at Place counts in the division.
+   --  The coefficient of the bit at Place in the division.
 
    function Divided
      (Kind : Crc_Kind; Bits : Bit_Sequence; Last : Natural) return Register
@@ -153,7 +153,7 @@ is
      Pre                => Is_Remainder (Kind, R),
      Post               => Is_Remainder (Kind, With_Zeros'Result),
      Subprogram_Variant => (Decreases => Zeros);
-   --  The remainder when so many zeros follow those that left R.
+   --  The remainder when so many zeros follow the bits with the remainder R.
 
    function After
      (Kind : Crc_Kind; Bits : Bit_Sequence; Last : Natural) return Register

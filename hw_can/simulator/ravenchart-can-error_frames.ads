@@ -1,9 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Error frames as values: what a node saw, and the flag that it sends.
+--  Error frames as values: the error that a node detected, and the flag that
+--  it sends.
 --
---  Guarantees   only an error-active node's flag can be seen by the others
+--  Guarantees   only the flag of an error-active node can be seen by the
+--               others
 --  Tasking      none: frames are values
 --  Timing       constant
 --
@@ -22,12 +24,13 @@ is
       Crc_Error,
       Form_Error,
       Acknowledgement_Error);
-   --  A bit read back other than sent; six equal bits where a stuff bit
-   --  belongs; a check sequence or stuff count that differs; a dominant bit
-   --  in a place of fixed form; a frame that nobody acknowledged.
+   --  Bit_Error: a bit is read back with the opposite level. Stuff_Error: six
+   --  equal bits where a stuff bit belongs. Crc_Error: a check sequence or
+   --  stuff count that differs. Form_Error: a dominant bit in a place of fixed
+   --  form. Acknowledgement_Error: no node acknowledged the frame.
 
    type Node_Role is (Transmitter, Receiver);
-   --  What the node was in the frame that failed.
+   --  The role of the node in the frame that failed.
 
    type Error_Flag is (Active_Flag, Passive_Flag);
    --  Six dominant bits, or six recessive ones.
@@ -42,7 +45,7 @@ is
    function Flag_Level (Flag : Error_Flag) return Levels.Level
    is (if Flag = Active_Flag then Levels.Dominant else Levels.Recessive)
    with Global => null;
-   --  The level of each of its bits.
+   --  The level of each bit of a flag.
 
    Flag_Bits : constant := 6;
    --  Length of one error flag.
@@ -68,6 +71,6 @@ is
    with
      Global => null,
      Post   => Length'Result in 14 .. 20;
-   --  Its bits on the bus, the intermission not counted.
+   --  The bits of the frame on the bus, without the intermission.
 
 end Ravenchart.Can.Error_Frames;

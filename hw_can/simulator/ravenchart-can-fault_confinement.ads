@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Fault confinement: the error counters of one node, and what they make of
---  it.
+--  Fault confinement: the error counters of one node, and the state that
+--  follows from them.
 --
 --  Guarantees   the state follows from the counters; each event moves one
---               counter as its rule says; a bus-off node comes back after
+--               counter as its rule states; a bus-off node comes back after
 --               128 sequences of 11 recessive bits, not a bit earlier
 --  Tasking      none: one owner for each Node
 --  Timing       constant
@@ -22,7 +22,7 @@ is
 
    subtype Connected_State is
      Controller_State range Error_Active .. Bus_Off;
-   --  What a node on the bus can be.
+   --  The states of a node on the bus.
 
    type Fault_Event is
      (Receiver_Error,
@@ -53,7 +53,7 @@ is
 
    function Transmit_Errors (N : Node) return Error_Count
    with Global => null;
-   --  The transmit error counter (TEC); 256 stands for bus-off.
+   --  The transmit error counter (TEC); 256 means bus-off.
 
    function Receive_Errors (N : Node) return Error_Count
    with Global => null;
@@ -72,7 +72,7 @@ is
      Global => null,
      Post   =>
        State'Result = State_For (Transmit_Errors (N), Receive_Errors (N));
-   --  What N is now.
+   --  The present state of N.
 
    function Raised
      (Count : Error_Count; By : Error_Count) return Error_Count
@@ -120,8 +120,8 @@ is
             | Transmitter_Held_Dominant
             | Transmitted               => Count)
    with Global => null;
-   --  Rules 1, 2, 5, 6 and 8 for the receive error counter. Rule 8 allows
-   --  119 to 127 where this says 127.
+   --  Rules 1, 2, 5, 6 and 8 for the receive error counter. Rule 8 allows 119
+   --  to 127; this implementation sets 127.
 
    Sequence_Bits : constant := 11;
    --  Recessive bits in a row that make one sequence of the recovery.
@@ -133,11 +133,11 @@ is
    --  1408 bits.
 
    subtype Recovery_Bits is Positive range 1 .. Whole_Recovery;
-   --  How far a recovery is from its end.
+   --  The bits that are left of a recovery.
 
    function Bits_To_Recovery (N : Node) return Recovery_Bits
    with Global => null;
-   --  Recessive bits in a row after which N is back, if it is bus-off.
+   --  The recessive bits in a row after which N is back, if it is bus-off.
 
    procedure Count (N : in out Node; Event : Fault_Event)
    with
@@ -154,13 +154,13 @@ is
        and then
          (if Event = Unanswered and then Transmit_Errors (N'Old) <= 135
           then Transmit_Errors (N) <= 135);
-   --  One event. Nobody falls from error-active to bus-off at once, and a
-   --  node alone on the bus never falls off it.
+   --  Count one event. A node never goes from error-active to bus-off at once,
+   --  and a node alone on the bus never becomes bus-off.
 
    function Sequence_Restarted (Left : Recovery_Bits) return Recovery_Bits
    is ((Left + Sequence_Bits - 1) / Sequence_Bits * Sequence_Bits)
    with Global => null;
-   --  Left, when the sequence that has begun counts for nothing.
+   --  Left, without the sequence that has begun.
 
    procedure Monitor (N : in out Node; Bus : Levels.Level)
    with
@@ -178,8 +178,9 @@ is
           and then Transmit_Errors (N) = 0
           and then Receive_Errors (N) = 0
           and then Bits_To_Recovery (N) = Whole_Recovery);
-   --  One bit on the bus while bus-off (rule 12). ISO 11898-1 (2015) lets the
-   --  user ask for the recovery first; who does not ask, does not call.
+   --  Count one bit on the bus while bus-off (rule 12). ISO 11898-1 (2015)
+   --  lets the user request the recovery first; without a request this is not
+   --  called.
 
 private
 

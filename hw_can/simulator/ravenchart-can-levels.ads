@@ -1,10 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What one bit time on the bus can carry.
+--  The levels of one bit time on the bus.
 --
---  Guarantees   the order of the levels is that of a wired AND: what the bus
---               carries is the first of the levels that are sent
+--  Guarantees   the order of the levels is that of a wired AND: the bus
+--               carries the first of the levels that are sent
 --  Tasking      none: levels are values
 --  Timing       constant
 --
@@ -16,7 +16,7 @@ package Ravenchart.Can.Levels
 is
 
    type Level is (Dominant, Recessive);
-   --  Position 0 and 1, as the bits count.
+   --  The positions 0 and 1 are the values of the bits.
 
    function Inverse (L : Level) return Level
    is (if L = Dominant then Recessive else Dominant)
@@ -26,6 +26,6 @@ is
    function To_Level (One : Boolean) return Level
    is (if One then Recessive else Dominant)
    with Global => null;
-   --  How a bit that is 1, or not, goes over the bus.
+   --  The level of a bit that is 1, or 0.
 
 end Ravenchart.Can.Levels;

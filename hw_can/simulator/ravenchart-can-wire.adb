@@ -17,10 +17,10 @@ is
    --  Exposed bits of the longest frame.
 
    Most_Fixed : constant := 45;
-   --  Its other bits: check field and tail.
+   --  The other bits of the longest frame: check field and tail.
 
    subtype Equal_Bits is Natural range 0 .. 5;
-   --  How many equal bits the bus has carried last.
+   --  The number of equal bits at the end of the bits so far.
 
    type Writer is record
       Picture : Image;
@@ -31,8 +31,8 @@ is
       Kind    : Crcs.Crc_Kind := Crcs.Crc_15;
       Check   : Crcs.Register := 0;
    end record;
-   --  A frame that is being written: how many bits of it were exposed to
-   --  stuffing, how many were not, and the register of its CRC.
+   --  A frame that is being written: the number of bits exposed to stuffing,
+   --  the number of the others, and the register of its CRC.
 
    function Written (W : Writer) return Natural
    is (W.Exposed + W.Picture.Stuffed + W.Fixed)
@@ -49,7 +49,7 @@ is
    with
      Global => null,
      Post   => (if Is_Sound'Result then Written (W) <= Longest);
-   --  Each stuff bit has used up four exposed bits, and the run one each.
+   --  Each stuff bit has used four exposed bits, and each bit of the run one.
 
    function Is_Followed
      (Before, After : Writer; Exposed, Fixed : Bit_Count) return Boolean
@@ -61,7 +61,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Is After what Before became by so many bits?
+   --  Does After follow from Before by so many bits?
 
    procedure Stuff (W : in out Writer)
    with
@@ -84,7 +84,7 @@ is
        and then
          (if W.Exposed >= 2
           then 4 * W.Picture.Stuffed + 2 <= W.Exposed);
-   --  An exposed bit, behind the stuff bit that is due before it.
+   --  Write an exposed bit, after the stuff bit that is due before it.
 
    procedure Put_Number
      (W : in out Writer; Value : Interfaces.Unsigned_32; Width : Positive)
@@ -100,7 +100,8 @@ is
        and then
          (if W.Exposed >= 2
           then 4 * W.Picture.Stuffed + 2 <= W.Exposed);
-   --  The lowest Width bits of Value, exposed, the highest of them first.
+   --  Write the lowest Width bits of Value, exposed, the highest of them
+   --  first.
 
    procedure Put_Fixed (W : in out Writer; L : Levels.Level)
    with
@@ -110,7 +111,7 @@ is
        Is_Sound (W)
        and then Is_Followed (W'Old, W, 0, 1)
        and then W.Picture.Stuffed = W.Picture.Stuffed'Old;
-   --  A bit that stuffing does not look at.
+   --  Write a bit that stuffing ignores.
 
    procedure Close (W : in out Writer; Ended : Field)
    with
@@ -137,7 +138,7 @@ is
        and then W.Exposed = Head_Bits (C.Format)
        and then W.Fixed = 0
        and then W.Kind = W.Kind'Old;
-   --  The start of frame and what Arbitration compares.
+   --  Write the start of frame and the bits that Arbitration compares.
 
    procedure Put_Check (W : in out Writer)
    with
@@ -152,8 +153,8 @@ is
          (W'Old, W, 0, (if W.Kind = Crcs.Crc_17 then 27 else 32))
        and then W.Picture.Stuffed = W.Picture.Stuffed'Old;
    --  The check field of CAN FD: the number of stuff bits modulo 8 as Gray
-   --  code and a bit of even parity, then the CRC, with a fixed stuff bit
-   --  first and behind each four bits.
+   --  code with a bit of even parity, then the CRC. A fixed stuff bit comes
+   --  first and after each four bits.
 
    procedure Put_Recessive
      (W : in out Writer; Count : Positive; Ended : Field)
@@ -197,7 +198,7 @@ is
          when 6      => 2#1010#,
          when others => 2#1001#)
    with Global => null;
-   --  What the check field says of so many stuff bits.
+   --  The stuff count of the check field for so many stuff bits.
 
    function Bit
      (Value : Interfaces.Unsigned_32; Place : Natural) return Levels.Level
@@ -205,7 +206,7 @@ is
    with
      Global => null,
      Pre    => Place < 32;
-   --  The bit of Value that counts 2**Place.
+   --  The bit of Value with the weight 2**Place.
 
    -----------
    -- Stuff --

@@ -4,8 +4,8 @@
 --  Frames as the bits that a transmitter puts on the bus, from the start of
 --  frame to the end of the intermission.
 --
---  Guarantees   dynamic stuff bits: at most one for four bits after the
---               first, over what is exposed to stuffing; all others counted
+--  Guarantees   dynamic stuff bits: after the first bit at most one for four
+--               bits that are exposed to stuffing. All other bits are counted
 --               exactly, so that a frame is never longer than its bound
 --  Tasking      none: images are values
 --  Timing       linear in the length of a frame
@@ -42,11 +42,11 @@ is
       Acknowledgement_Delimiter,
       End_Of_Frame,
       Intermission);
-   --  The first begins with the start of frame, and ends with what
-   --  Arbitration compares (IDE in a standard frame). Format_Bits: what
-   --  follows up to the reserved bit, in CAN FD up to the bit rate switch.
-   --  Length_Bits: the length code, in CAN FD with the error state indicator
-   --  before it. Check_Field: stuff count and CRC, stuff bits included.
+   --  The first field begins with the start of frame, and ends with the bits
+   --  that Arbitration compares (IDE in a standard frame). Format_Bits: the
+   --  bits up to the reserved bit, in CAN FD up to the bit rate switch.
+   --  Length_Bits: the length code, in CAN FD after the error state indicator.
+   --  Check_Field: stuff count and CRC, stuff bits included.
 
    type Field_Ends is array (Field) of Bit_Count;
    --  The last bit of each field.
@@ -56,8 +56,8 @@ is
       Ends    : Field_Ends := (others => 0);
       Stuffed : Bit_Count := 0;
    end record;
-   --  Stuffed are the dynamic stuff bits among the bits. A transmitter sends
-   --  the acknowledgement slot recessive.
+   --  Stuffed: the number of dynamic stuff bits. A transmitter sends the
+   --  acknowledgement slot recessive.
 
    function Length (I : Image) return Bit_Count
    is (I.Ends (Intermission))
@@ -77,7 +77,7 @@ is
    function Head_Bits (Format : Frame_Format) return Bit_Count
    is (if Format = Can.Standard then 14 else 33)
    with Global => null;
-   --  The start of frame and what Arbitration compares.
+   --  The start of frame and the bits that Arbitration compares.
 
    function Exposed_Bits (F : Frame) return Bit_Count
    is (Head_Bits (F.Format)
@@ -85,12 +85,12 @@ is
        + (if F.Kind = Data then 8 * F.Length else 0)
        + 15)
    with Global => null;
-   --  The bits of a classic frame that stuffing looks at.
+   --  The bits of a classic frame that are exposed to stuffing.
 
    function Exposed_Bits (F : Fd_Frames.Fd_Frame) return Bit_Count
    is (Head_Bits (F.Format) + 3 + 5 + 8 * F.Length)
    with Global => null;
-   --  The bits of a CAN FD frame that dynamic stuffing looks at.
+   --  The bits of a CAN FD frame that are exposed to dynamic stuffing.
 
    function Check_Bits (Length : Fd_Frames.Fd_Length) return Bit_Count
    is (if Length <= 16 then 4 + 17 + 6 else 4 + 21 + 7)
@@ -120,7 +120,7 @@ is
          in Head_Bits (F.Format) + 3
             .. Head_Bits (F.Format) + 3 + (Head_Bits (F.Format) + 2) / 4;
    --  A CAN FD frame. Where five equal bits end the data, the first fixed
-   --  stuff bit of the check field stands for the dynamic one.
+   --  stuff bit of the check field replaces the dynamic one.
 
    type Phases is record
       Nominal : Bit_Count := 0;
@@ -142,8 +142,8 @@ is
      Pre    => Is_Ordered (I);
    --  The data phase of a frame that switches its rate begins at the sample
    --  point of the bit of the switch and ends at that of the delimiter of the
-   --  CRC. What of these two bits is nominal makes one nominal bit, and what
-   --  is not one data bit (ISO 11898-1 (2015), bit rate switch). A classic
+   --  CRC. The nominal parts of these two bits make one nominal bit, the other
+   --  parts one data bit (ISO 11898-1 (2015), bit rate switch). A classic
    --  frame has no data phase.
 
 end Ravenchart.Can.Wire;

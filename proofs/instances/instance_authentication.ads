@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Authentication of messages: what is no generic is proved as it is.
+--  Authentication of messages: code that is no generic is proved as it is.
 
 with Ravenchart.Can.Authentication;
 

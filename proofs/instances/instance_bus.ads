@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A CAN controller, with whichever driver the project chose.
+--  A CAN controller, with the driver that the project selects.
 
 with System;
 with Ravenchart.Can;

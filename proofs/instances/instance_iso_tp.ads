@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  ISO-TP: what is no generic is proved as it is, the object of a reassembly
---  as an instance.
+--  ISO-TP: code that is no generic is proved as it is, the object of a
+--  reassembly as an instance.
 
 with Ravenchart.Can.Iso_Tp.Reassemblies;
 with Ravenchart.Can.Iso_Tp.Receivers;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The environment task of a host: writes the trace out until a signal ends
---  the run, and the summary then.
+--  The environment task of a host: it writes the trace until a signal ends the
+--  run, and then the summary.
 
 with System;
 with Ada.Real_Time;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  End-to-end protection: what is no generic is proved as it is.
+--  End-to-end protection: code that is no generic is proved as it is.
 
 with Ravenchart.Can.Data_Crcs;
 with Ravenchart.Can.Protection;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The core of the bus simulator: what is no generic is proved as it is.
+--  The core of the bus simulator: code that is no generic is proved as it is.
 
 with Ravenchart.Can.Arbitration;
 with Ravenchart.Can.Error_Frames;

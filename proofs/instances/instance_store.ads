@@ -26,21 +26,21 @@ package Instance_Store
   with SPARK_Mode
 is
    Ceiling : constant System.Priority := System.Default_Priority + 7;
-   --  Of every object here.
+   --  The ceiling of every object here.
 
    type Reading is record
       Level : Ravenchart.Number := 0;
       Valid : Boolean := False;
    end record;
-   --  Stands for a type of a model.
+   --  Represents a type of a model.
 
    No_Reading : constant Reading := (others => <>);
 
    type Signal is (Start, Stop, Reset);
-   --  Stands for the events of a region.
+   --  Represents the events of a region.
 
    type Job is (Sense, Control, Report);
-   --  Stands for the activities of a processor.
+   --  Represents the activities of a processor.
 
    package Values is new Ravenchart.Policy_Queues
      (Element_Type => Reading,
@@ -75,10 +75,10 @@ is
       Capacity   => 3);
 
    type Place is (Busy, Idle);
-   --  Stands for the configuration of a region.
+   --  Represents the configuration of a region.
 
    type Left is (Nothing_Left, All_Left);
-   --  Stands for the domains of transitions.
+   --  Represents the domains of transitions.
 
    function Name_Of (Item : Signal) return Signal is (Item);
 
@@ -101,7 +101,7 @@ is
       Is_Freed      => Is_Freed);
 
    type Way is (None, First_Way, Second_Way, Segment);
-   --  Stands for the transitions of a region and their segments.
+   --  Represents the transitions of a region and their segments.
 
    function Is_Segment (T : Way) return Boolean is (T = Segment);
 
@@ -141,7 +141,7 @@ is
       Report       => Faults.Report);
 
    procedure Answer;
-   --  Stands for what a model does about a loss.
+   --  Represents the reaction of a model to a loss.
 
    package Dropping_Answered_Offers is new Ravenchart.Answered_Offers
      (Offers  => Dropping_Offers,

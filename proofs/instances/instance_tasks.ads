@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  One periodic and one sporadic processor, and what supervises them: together
---  with Instance_Store and Instance_Bus a small controller, as a model would
---  generate it.
+--  One periodic and one sporadic processor with their supervisor. With
+--  Instance_Store and Instance_Bus they are a small controller, as generated
+--  from a model.
 
 with System;
 with Ada.Real_Time;
@@ -26,7 +26,7 @@ is
    --  The activities of the periodic processor.
 
    type Job_Table is array (Job) of Ravenchart.Schedules.Slot;
-   --  When each one runs.
+   --  The releases in which each activity runs.
 
    Jobs : constant Job_Table :=
      (Sense   => (Divisor => 1, Phase => 0),
@@ -74,7 +74,7 @@ is
 
    procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds)
    with Global => (In_Out => Instance_Store.Counters.State);
-   --  An activity took so much processor time: it may be too much.
+   --  An activity took so much processor time, which may be too much.
 
    package Cyclic is new Ravenchart.Periodic_Processors
      (Name             => "cyclic",
@@ -117,14 +117,14 @@ is
      (Item      : Watched;
       Elapsed   : Ravenchart.Nanoseconds;
       Is_Silent : out Boolean);
-   --  Is it silent?
+   --  Is the processor silent?
 
    procedure Note_Silence (Item : Watched)
    with
      Global =>
        (In_Out => (Instance_Store.Counters.State,
                    Ravenchart.Failures.State));
-   --  It is.
+   --  The processor is silent.
 
    package Supervisor is new Ravenchart.Supervisors
      (Processor_Id  => Watched,

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Transmission modes: what is no generic is proved as it is.
+--  Transmission modes: code that is no generic is proved as it is.
 
 with Ravenchart.Can.Transmissions;
 

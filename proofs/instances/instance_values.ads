@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Provers see only instances: one of the buffer of recorded values. What
---  writes its values out is proved with the runtime.
+--  Provers see only instances: one of the buffer of recorded values. The unit
+--  that writes its values out is proved with the runtime.
 
 with System;
 with Ravenchart.Value_Buffers;

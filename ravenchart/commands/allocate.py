@@ -11,11 +11,13 @@ from rich.console import Console
 from rich.table import Table as Printed
 from rich.text import Text
 
+from ravenchart import rounded
 from ravenchart.allocation.helpers import helped
 from ravenchart.allocation.proposals import STRATEGIES, Proposal, propose, yaml
 from ravenchart.analysis.present.sentences import verdict_line
-from ravenchart.analysis.units import microseconds
 from ravenchart.failures import OK, WRONG
+from ravenchart.gen.model.statechart import Timing
+from ravenchart.gen.model.system import Processor
 from ravenchart.terminal import console, progress
 
 from . import common
@@ -33,29 +35,28 @@ def show(proposal: Proposal, out: Console | None = None) -> None:
     for column in ("T", "D", "C", "priority", "R", "slack"):
         table.add_column(column, justify="right", no_wrap=True)
     bounds = {row.row.name: row.bound for _, row in analysis.rows()}
-    for processor in sorted(proposal.system.processors, key=lambda p: -p.priority):
-        times = (processor.period, processor.deadline, processor.wcet)
-        bound, slack = analysis.found.from_event(processor.name), analysis.slack(processor.name)
-        mark = " (stays)" if processor.name in proposal.kept else ""
-        cells = (str(processor.priority), _us(bound), _us(slack))
-        table.add_row(processor.name + mark, *map(microseconds, times), *cells, style="bold")
-        for slot in processor.slots:
-            limits = (slot.timing.period, slot.timing.deadline, slot.timing.wcet)
-            found = bounds.get(slot.element)
-            left = None if found is None else slot.timing.deadline - found
-            table.add_row(
-                f"  {slot.element}", *map(microseconds, limits), "", _us(found), _us(left)
-            )
+    unit = rounded.unit_of(processor.period for processor in proposal.system.processors)
+
+    def add(
+        name: str, of: Processor | Timing, priority: str, bound: int | None, style: str
+    ) -> None:
+        found, deadline = unit.against(bound, of.deadline)
+        slack = unit.down(None if bound is None else of.deadline - bound)
+        times = unit.down(of.period), deadline, unit.up(of.wcet)
+        table.add_row(name, *times, priority, found, slack, style=style)
+
+    for one in sorted(proposal.system.processors, key=lambda p: -p.priority):
+        mark = " (stays)" if one.name in proposal.kept else ""
+        bound = analysis.found.from_event(one.name)
+        add(one.name + mark, one, str(one.priority), bound, "bold")
+        for slot in one.slots:
+            add(f"  {slot.element}", slot.timing, "", bounds.get(slot.element), "")
     out.print(table)
-    out.print("Times in us. Drivers, the host probe and sporadic processors stay as they are;")
-    out.print("priorities are by deadline.")
+    out.print(f"Times in {unit.name}, rounded to the safe side. Priorities are by deadline.")
+    out.print("Drivers, the host probe and sporadic processors stay as they are.")
     if not analysis.schedulable:
         out.print("No tables were found that keep every deadline and limit, chains included.")
     out.print("`--yaml` prints `processors:` to put into the model.")
-
-
-def _us(time: int | None) -> str:
-    return "-" if time is None else microseconds(time)
 
 
 def _answer(proposal: Proposal, strategy: str) -> AllocateResult:

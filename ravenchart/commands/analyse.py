@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ravenchart.analysis.units import spoken
+from ravenchart import rounded
 from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.terminal import progress
 
@@ -125,12 +125,12 @@ def _is_bounded(options: argparse.Namespace, checked: Checked, given: Mapping[st
     """Print each bound of a static tool beside its WCET; none is above it."""
     table = bounds.rows(checked, given)
     for row in table:
-        wcet = f"its WCET of {spoken(row.wcet)}"
         if row.bound is None:
-            print(f"{row.row}: no bound is given for {wcet}")
+            print(f"{row.row}: no bound is given for its WCET of {rounded.up(row.wcet)}")
         else:
+            bound, wcet = rounded.beside(row.bound, row.wcet)
             word = "ABOVE" if row.words else "within"
-            print(f"{row.row}: bound {spoken(row.bound)}, {word} {wcet}")
+            print(f"{row.row}: bound {bound}, {word} its WCET of {wcet}")
     for text in bounds.findings(table, given, checked.system):
         say(options.answer, text)
     return not any(row.words for row in table)

@@ -9,6 +9,7 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from ravenchart import rounded
 from ravenchart.analysis.plain.bounds import Bound, read_bounds
 from ravenchart.analysis.units import microseconds
 from ravenchart.building.checking import Checked
@@ -53,25 +54,27 @@ def findings(
     """An error for each WCET that a figure refutes, where the WCET stands, with a hint."""
     for one in table:
         place, key = origin_of(system, one.row), key_of(system, one.row)
-        stated = f"its `{key}` of {microseconds(one.wcet)} us"
         seen, bound = one.measured or 0, given.get(one.row)
-        took = f"{one.row} was measured to take {microseconds(seen)} us"
+        took = f"{one.row} was measured to take"
         if seen > one.wcet:
+            longest, stated = rounded.beside(seen, one.wcet)
             wanted = microseconds(one.proposed or seen)
             yield (
-                f"{place}: error: {took}, above {stated}\n"
+                f"{place}: error: {took} {longest}, above its `{key}` of {stated}\n"
                 f"{place}: hint: write `{key}: {wanted} us` or more"
             )
         if bound is not None and bound.wcet > one.wcet:
-            longest = microseconds(bound.wcet)
+            longest, stated = rounded.beside(bound.wcet, one.wcet)
             yield (
-                f"{bound.place}: error: the bound of {one.row}, {longest} us, is above {stated}\n"
+                f"{bound.place}: error: the bound of {one.row}, {longest}, is above its `{key}` "
+                f"of {stated}\n"
                 f"{place}: note: the `{key}` of {one.row} is here\n"
-                f"{place}: hint: write `{key}: {longest} us` or more"
+                f"{place}: hint: write `{key}: {microseconds(bound.wcet)} us` or more"
             )
         if bound is not None and seen > bound.wcet:
+            longest, stated = rounded.beside(seen, bound.wcet)
             yield (
-                f"{bound.place}: error: {took}, above its bound of {microseconds(bound.wcet)} us\n"
+                f"{bound.place}: error: {took} {longest}, above its bound of {stated}\n"
                 f"{bound.place}: hint: let the tool analyse the program that was measured, for "
                 "the processor that it was measured on"
             )

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ravenchart import terminal
+from ravenchart import rounded, terminal
 from ravenchart.failures import OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.conformance.ends import Setup, open_ends
@@ -63,7 +63,8 @@ def show(result: SuiteResult, console: Console | None = None) -> None:
     table.add_column("s", justify="right", no_wrap=True)
     table.add_column("seen, or the reason", overflow="fold", ratio=1)
     for case in result.cases:
-        cells = (case.name, case.verdict.value, f"{case.seconds:.2f}", case.detail)
+        took = rounded.instant(rounded.of_seconds(case.seconds))
+        cells = (case.name, case.verdict.value, took, case.detail)
         table.add_row(*map(Text, cells), style=_STYLES[case.verdict])
     out.print(table)
     bars = histogram(result.latencies)

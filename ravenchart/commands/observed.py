@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from ravenchart import rounded
 from ravenchart.analysis.present.report import Execution, RunReport, executions
 from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import (
@@ -17,7 +18,6 @@ from ravenchart.analysis.system.observed import (
     read_map,
     read_trace,
 )
-from ravenchart.analysis.units import spoken
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused
 
@@ -75,7 +75,7 @@ def report(checked: Checked, seen: Observation, path: Path, *, within: bool) -> 
 def tell(rows: Sequence[Execution], every: Collection[str]) -> bool:
     """Print what was seen of each of ``rows``, and which of ``every`` was not; none is above."""
     for row in rows:
-        longest, wcet = spoken(row.observed), spoken(row.wcet)
+        longest, wcet = rounded.beside(row.observed, row.wcet)
         word = "ABOVE" if row.exceeded else "within"
         print(f"{row.row}: {longest}, {word} its WCET of {wcet}")
     for name in sorted(set(every) - {row.row for row in rows}):

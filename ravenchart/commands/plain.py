@@ -13,6 +13,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from ravenchart import rounded
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import Latency
 from ravenchart.analysis.core.holistic import Holistic
@@ -28,7 +29,6 @@ from ravenchart.analysis.plain.results import Json, PlainResult, analyse_plain, 
 from ravenchart.analysis.present.plain_report import render_plain
 from ravenchart.analysis.present.report import Execution
 from ravenchart.analysis.present.sentences import distance_lines, offset_lines, overload_lines
-from ravenchart.analysis.units import percent, spoken
 from ravenchart.failures import Refused
 from ravenchart.terminal import console
 
@@ -153,24 +153,19 @@ def show(result: PlainResult, out: Console) -> None:
         if not latency.met:
             out.print(_late(latency), markup=False)
     if result.scaling is not None:
-        factor = result.scaling.factor
+        factor = rounded.factor(result.scaling.factor)
         limit = f", then {result.scaling.binding} fails" if result.scaling.binding else ""
-        out.print(
-            f"all execution times can be multiplied by {float(factor):.4f}{limit}", markup=False
-        )
+        out.print(f"all execution times can be multiplied by {factor}{limit}", markup=False)
     for name, share in loads(result.system.network).items():
-        out.print(f"load of {name or 'the core'}: {percent(share)}", markup=False)
+        out.print(f"load of {name or 'the core'}: {rounded.percent(share)}", markup=False)
     out.print(_table(result))
     if len(found.responses) > SHOWN:
         out.print(f"and {len(found.responses) - SHOWN} more with more slack", markup=False)
     for line in (*offset_lines(found.responses.values()), *distance_lines(found)):
         out.print(line, markup=False)
     for latency in result.latencies:
-        out.print(
-            f"chain {latency.chain.name}: reaction {_shown(latency.reaction)}, "
-            f"age {_shown(latency.age)}",
-            markup=False,
-        )
+        reaction, age = _shown(latency.reaction), _shown(latency.age)
+        out.print(f"chain {latency.chain.name}: reaction {reaction}, age {age}", markup=False)
     for line in advice.lines(_advice(result)):
         out.print(line, markup=False)
 
@@ -181,7 +176,7 @@ def _advice(result: PlainResult) -> advice.Advice | None:
 
 
 def _is_delayed(response: Response | FrameResponse) -> bool:
-    return response.reason in (Reason.OVERLOAD, Reason.RIVAL)
+    return response.reason in (Reason.OVERLOAD, Reason.DELAYED)
 
 
 def _late(latency: Latency) -> str:
@@ -198,28 +193,30 @@ def _miss(name: str, found: Holistic) -> str:
     if needed is None:
         return f"{name} has no bound: {no_bound_reason(found.responses[name])}"
     over = needed - found.deadline(name)
-    return f"{name} misses its deadline by {spoken(over)}"
+    return f"{name} misses its deadline by {rounded.up(over)}"
 
 
 def _table(result: PlainResult) -> Table:
-    found = result.found
+    found, items = result.found, result.system.network.items()
+    unit = rounded.unit_of(item.period for item in items.values())
     table = Table(box=None)
-    for title in ("", "T", "D", "C", "J", "B", "R", "slack"):
-        table.add_column(title, justify="right" if title else "left")
+    table.add_column(f"in {unit.name}")
+    for title in ("T", "D", "C", "J", "B", "R", "slack"):
+        table.add_column(title, justify="right")
     names = sorted(found.responses, key=lambda name: _slack(name, found))
     for name in names[:SHOWN]:
         response = found.responses[name]
-        item = result.system.network.items()[name]
-        longest = item.plain_wcet if isinstance(item, Task) else item.cost
+        item = items[name]
+        longest = item.plain_wcet if isinstance(item, Task) else item.transmission_time
         needed = found.from_event(name)
-        slack = None if needed is None else found.deadline(name) - needed
+        bound, deadline = unit.against(needed, item.deadline)
         table.add_row(
             name,
-            *map(spoken, (item.period, item.deadline, longest)),
-            spoken(item.jitter),
-            spoken(response.blocked),
-            _shown(needed),
-            _shown(slack),
+            unit.down(item.period),
+            deadline,
+            *map(unit.up, (longest, item.jitter, response.blocked)),
+            bound if needed is not None else "no bound",
+            unit.down(None if needed is None else item.deadline - needed),
         )
     return table
 
@@ -230,4 +227,4 @@ def _slack(name: str, found: Holistic) -> tuple[bool, int]:
 
 
 def _shown(time: int | None) -> str:
-    return "no bound" if time is None else spoken(time)
+    return "no bound" if time is None else rounded.up(time)

@@ -190,7 +190,7 @@ def executed(system: System, program: Path, stimuli: Stimuli) -> Played:
     }
     lines = [str(stimuli.until)]
     for entry in stimuli.entries:
-        owner, what = entry.place
+        owner, what = entry.receiver
         number, of_type = known[(owner.lower(), what.lower())]
         values = numbers(of_type, entry.value)
         lines.append(" ".join(map(str, (entry.at, number, *values))))

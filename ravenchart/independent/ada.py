@@ -95,13 +95,13 @@ PARAMETERS = {"w": ("window", WINDOWS), "stuffed": ("positive", 2**31)}
 """The parameters of functions, with their types and what they are below."""
 
 
-def demand(window: int, late: int, period: int, cost: int, more: int = 0) -> int:
+def demand(window: int, late: int, period: int, wcet: int, more: int = 0) -> int:
     """Demand of the runtime's Response_Times: ceiling ((W + J) / T) * C, and what comes besides."""
-    if not (0 <= window < WINDOWS and 0 <= late < WINDOWS and 0 <= cost < WINDOWS):
+    if not (0 <= window < WINDOWS and 0 <= late < WINDOWS and 0 <= wcet < WINDOWS):
         raise ValueError("a Window out of range")
     if not (0 < period < WINDOWS and 0 <= more <= LAST):
         raise ValueError("a Separation or Time out of range")
-    return min(LAST, -(-(window + late) // period) * cost + more)
+    return min(LAST, -(-(window + late) // period) * wcet + more)
 
 
 @dataclass(frozen=True, slots=True)

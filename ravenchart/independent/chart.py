@@ -148,14 +148,14 @@ class Chart:
             found.append(self.at(found[-1][0]).region)
         return found
 
-    def lane(self, name: str) -> Region:
+    def concurrent_region(self, name: str) -> Region:
         """The innermost region around a vertex that is not the only one of its state."""
         for owner, nested in self.around(name):
             if owner is None or len(self.at(owner).inside) > 1:
                 return owner, nested
         raise AssertionError
 
-    def lanes(self) -> list[Region]:
+    def concurrent_regions(self) -> list[Region]:
         """All of these regions, those inside one before it, the top-level one last."""
         found: list[Region] = []
 
@@ -200,7 +200,7 @@ class Chart:
         if vertex.kind == "terminate":
             found[key_of(TOP)] = vertex.name
         elif not vertex.is_range:
-            found[key_of(self.lane(top))] = vertex.name
+            found[key_of(self.concurrent_region(top))] = vertex.name
         for nested in vertex.inside:
             self.enter(nested, [t for t in inside if t != top], found)
 
@@ -222,18 +222,18 @@ class Chart:
     def lines(self) -> list[Line]:
         """The declared form, in order of precedence."""
         found: list[Line] = []
-        for lane in self.lanes():
-            own = self._lines(lane)
+        for region in self.concurrent_regions():
+            own = self._lines(region)
             own.sort(key=lambda line: -max(len(self.around(s)) for s in line.sources))
             found += own
         return found
 
-    def _lines(self, lane: Region) -> list[Line]:
+    def _lines(self, region: Region) -> list[Line]:
         found: list[Line] = []
         for one in self.transitions:
-            if self.at(one.source).is_state and self.lane(one.source) == lane:
+            if self.at(one.source).is_state and self.concurrent_region(one.source) == region:
                 found += self._ways((one,))
-        here = [v for v in self.vertices.values() if self.lane(v.name) == lane]
+        here = [v for v in self.vertices.values() if self.concurrent_region(v.name) == region]
         for vertex in here:
             for event in vertex.form.texts("defer"):
                 name, on = f"Defer_{event}_In_{vertex.name}", f"on_{event}".lower()
@@ -354,6 +354,6 @@ def domain_of(region: Region) -> str:
     return "everything" if owner is None else f"inside_{nested or owner}".lower()
 
 
-def key_of(lane: Region) -> str:
+def key_of(region: Region) -> str:
     """The component of a configuration that holds the leaf of a region."""
-    return "top" if lane[0] is None else f"in_{lane[1]}".lower()
+    return "top" if region[0] is None else f"in_{region[1]}".lower()

@@ -61,10 +61,12 @@ class _Comparison:
         self.chart, self.items, self.path, self.report = chart, items, path, report
         self.package = f"{chart.name}_States"
         self.declared = _inside(items if states is None else states, self.package)
-        self.lanes = chart.lanes()
-        self.several = len(self.lanes) > 1
+        self.regions = chart.concurrent_regions()
+        self.several = len(self.regions) > 1
         self.literals = {
-            token.low for lane in self.lanes for token in enumeration(self.declared, _type_of(lane))
+            token.low
+            for region in self.regions
+            for token in enumeration(self.declared, _type_of(region))
         } | {items[1].low for items in self._subtypes()}
 
     def _subtypes(self) -> list[list[Token]]:
@@ -87,15 +89,15 @@ class _Comparison:
     def states(self) -> None:
         """The enumerations of leaves, and the composites as ranges of them."""
         line = self.declared[0].line if self.declared else 1
-        for lane in self.lanes:
-            found = enumeration(self.declared, _type_of(lane))
+        for region in self.regions:
+            found = enumeration(self.declared, _type_of(region))
             at = found[0].line if found else line
             said = [token.low for token in found]
-            wanted = [self.literal(name) for name in self.chart.leaves(lane)]
+            wanted = [self.literal(name) for name in self.chart.leaves(region)]
             for name in wanted:
                 place = said.index(name) if name in said else 0
                 here = found[place].line if found else at
-                text = f"the state {name} is not among the leaves {_type_of(lane)}"
+                text = f"the state {name} is not among the leaves {_type_of(region)}"
                 self.agree("states", here, name in said, text)
             for token in found:
                 text = f"{token.text} is no state of the model in {self.chart.name}"
@@ -181,20 +183,20 @@ class _Comparison:
     def active(self, holder: str, vertex: str) -> list[Words]:
         """The conditions for a state to be active, or one inside it."""
         at = self.chart.at(vertex)
-        lane = TOP if at.kind == "terminate" else self.chart.lane(vertex)
-        leaf = f"{holder}.{key_of(lane)}" if self.several else holder
+        region = TOP if at.kind == "terminate" else self.chart.concurrent_region(vertex)
+        leaf = f"{holder}.{key_of(region)}" if self.several else holder
         sign = "in" if at.is_range else "="
         own = words(f"{leaf} {sign} {self.package}.{self.literal(vertex)}")
-        return [*(self.active(holder, lane[0]) if lane[0] is not None else []), own]
+        return [*(self.active(holder, region[0]) if region[0] is not None else []), own]
 
     def _sources(self, line: Line) -> set[Words]:
-        holder = "Place" if self.several else "Leaf"
+        holder = "Configuration" if self.several else "Leaf"
         return {one for source in line.sources for one in self.active(holder, source)}
 
     def _asks_for_source(self, fires: bool) -> None:
         """That no transition is enabled where it does not start."""
         begins, table = alternatives(self.items, "Enabled")
-        holder = "Place" if self.several else "Leaf"
+        holder = "Configuration" if self.several else "Leaf"
         said = tuple(token.low for token in begins)
         text = "Enabled does not ask for the source of a transition"
         holds = said == words(f"(In_Source (T, Self.{holder}) and then") or not fires
@@ -249,8 +251,8 @@ class _Comparison:
         at: int,
     ) -> None:
         wanted = {
-            lane if self.several else "top": words(f"{self.package}.{self.literal(leaf)}")
-            for lane, leaf in leaves.items()
+            region if self.several else "top": words(f"{self.package}.{self.literal(leaf)}")
+            for region, leaf in leaves.items()
         }
         said = self._configuration(found[1]) if found else None
         if said is not None and self.chart.ends(leaves.get("top")):
@@ -265,17 +267,17 @@ class _Comparison:
     def _configuration(self, items: list[Token]) -> dict[str, Words]:
         """The leaves of an aggregate, or the one leaf; none where all is kept."""
         low = [token.low for token in items]
-        if low == ["place" if self.several else "leaf"]:
+        if low == ["configuration" if self.several else "leaf"]:
             return {}
         if not self.several or low[0] != "(":
             return {"top": tuple(low)}
         inner = items[1:-1]
-        is_delta = low[1:4] == ["place", "with", "delta"]
+        is_delta = low[1:4] == ["configuration", "with", "delta"]
         found = {
             part[0].low: tuple(token.low for token in part[2:])
             for part in split(inner[3:] if is_delta else inner, ",")
         }
-        whole = set(found) == {key_of(lane) for lane in self.lanes}
+        whole = set(found) == {key_of(region) for region in self.regions}
         return found if is_delta != whole else {"incomplete": ()}
 
     def _restored(
@@ -284,10 +286,10 @@ class _Comparison:
         """The leaf in the region of a history is given by the function that restores it."""
         here = found[0].line if found else at
         said = self._configuration(found[1]) if found else {}
-        lane = key_of(self.chart.lane(line.sources[0])) if self.several else "top"
+        region = key_of(self.chart.concurrent_region(line.sources[0])) if self.several else "top"
         wanted = words(f"{line.restores} (Past)")
-        text = f"Target of {name} is not {line.restores} (Past) in {lane}"
-        self.agree("targets", here, said.get(lane) == wanted, text)
+        text = f"Target of {name} is not {line.restores} (Past) in {region}"
+        self.agree("targets", here, said.get(region) == wanted, text)
 
     def _occurrences(self, lines: list[Line]) -> None:
         """Each event of the queue is the occurrence of its name, any other is none."""
@@ -357,9 +359,9 @@ class _Comparison:
             self.agree("timers", token.line, False, "a time-out that the model does not have")
 
 
-def _type_of(lane: Region) -> str:
+def _type_of(region: Region) -> str:
     """The type of a region's leaves."""
-    return "Leaf" if lane[0] is None else f"{lane[1]}_Leaf"
+    return "Leaf" if region[0] is None else f"{region[1]}_Leaf"
 
 
 def _inside(items: Sequence[Token], package: str) -> list[Token]:

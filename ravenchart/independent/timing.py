@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The certificate against the model: its facts, its terms, and the bounds that it claims.
+"""The certificate against the model: its facts, its terms, and its claimed bounds.
 
 Tasks: Joseph and Pandya 1986, Audsley et al. 1993, with several jobs in a busy period
 (Lehoczky 1990) and release jitter (Tindell, Burns, Wellings 1994). Frames: Davis, Burns, Bril,
 Lukkien 2007, with FIFO queues as in Davis and Navet 2012. Lateness follows the claimed
-response of what releases; every window is solved anew from 0 on, so a claim must be the least
-fixed point of what follows from the model.
+response of what releases; every window is solved anew from 0 on, so a claimed bound must be the
+least fixed point of what follows from the model.
 """
 
 from __future__ import annotations
@@ -159,9 +159,9 @@ class Timing:
                 timed = own if all(one.divisor == 1 for one in task.rows) else name
                 self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
                 self.same("rows", f"{timed}_Phase", 0, f"the phase {what}")
-        for divisor, cost in self.costs(task).items():
+        for divisor, wcet in self.wcets(task).items():
             letter = "C" if divisor == 1 else f"C_{divisor}"
-            self.same("sums", f"{own}_{letter}", cost, f"the sum of WCETs {why}")
+            self.same("sums", f"{own}_{letter}", wcet, f"the sum of WCETs {why}")
             rows = [row.element for row in task.rows if row.divisor == divisor]
             rows = rows if task.rows else [task.element]
             self.terms("sums", f"{own}_{letter}", [f"{ada(row)}_Wcet" for row in rows])
@@ -174,7 +174,7 @@ class Timing:
             return self.value(f"{ada(task.after)}_R")
         return self.tick(task.node)[0]
 
-    def costs(self, task: Task) -> dict[int, int]:
+    def wcets(self, task: Task) -> dict[int, int]:
         """Its work with context switches."""
         works = dict(task.works)
         works[1] += (4 if task.sporadic else 2) * self.switch(task.node)
@@ -231,7 +231,7 @@ class Timing:
 
     def _responses(self, task: Task) -> None:
         own = ada(task.element)
-        jitter, claim = self.jitter(task), self.value(f"{own}_R")
+        jitter, claimed = self.jitter(task), self.value(f"{own}_R")
         windows: list[int] = []
         while not windows or jitter + windows[-1] > len(windows) * task.period:
             job = len(windows) + 1
@@ -244,9 +244,9 @@ class Timing:
             f"{ada(t.element)}_{'C' if n == 1 else f'C_{n}'}"
             for t in inside
             if t.priority >= task.priority
-            for n in self.costs(t)
+            for n in self.wcets(t)
         ]
-        mine = [f"{own}_{'C' if n == 1 else f'C_{n}'}" for n in self.costs(task)]
+        mine = [f"{own}_{'C' if n == 1 else f'C_{n}'}" for n in self.wcets(task)]
         for job, window in enumerate(windows, 1):
             tail = "" if len(windows) == 1 else f"_{job}"
             self.same("responses", f"{own}_W{tail}", window, f"the window of job {job}")
@@ -256,9 +256,9 @@ class Timing:
             self.report.skip("deadlines that are kept by offsets alone")
         else:
             line = self.line(f"{own}_R")
-            text = f"{task.element} can miss its deadline: R = {claim} > D = {task.deadline}"
+            text = f"{task.element} can miss its deadline: R = {claimed} > D = {task.deadline}"
             path = self.certificate.path
-            self.report.agree("responses", path, line, claim <= task.deadline, text)
+            self.report.agree("responses", path, line, claimed <= task.deadline, text)
 
     def line(self, name: str) -> int:
         """The line of a number."""
@@ -277,14 +277,14 @@ class Timing:
 
     def demand(self, task: Task, jobs: int, window: int) -> int:
         """The work of so many jobs and of all that delays them within a window."""
-        total = _work(self.costs(task), jobs) + self.deployment.blocking(task)
+        total = _work(self.wcets(task), jobs) + self.deployment.blocking(task)
         release = self.deployment.nodes.map(task.node).time("release", 0)
         for other in self.deployment.tasks:
             if other.node != task.node:
                 continue
             count = -(-(window + self.jitter(other)) // other.period)
             if other is not task and other.priority >= task.priority:
-                total += _work(self.costs(other), count)
+                total += _work(self.wcets(other), count)
             total += count * release * (2 if other.sporadic else 1)
         period, wcet = self.tick(task.node)
         return total + (-(-window // period) * wcet if period else 0)
@@ -339,11 +339,11 @@ class Timing:
         return hits * (ERROR_BITS * self.bit(bus) + max(map(self.time, frames)))
 
     def _frame(self, message: Message, before: list[Message], behind: list[Message]) -> None:
-        own, cost, late = ada(message.element), self.time(message), self.late(message)
+        own, length, late = ada(message.element), self.time(message), self.late(message)
         blocking = max(map(self.time, behind), default=0)
-        bit, claim = self.bit(message.bus), self.value(f"{own}_R")
+        bit, claimed = self.bit(message.bus), self.value(f"{own}_R")
         others = [m for m in before if m is not message]
-        busy = self.solved(lambda w: blocking + self.traffic(before, message, w), cost)
+        busy = self.solved(lambda w: blocking + self.traffic(before, message, w), length)
         why = f"the busy period of {message.element}"
         self.same("arbitration", f"{own}_Busy", busy, why)
         self.same("arbitration", f"{own}_Busy_Needs", busy, "the demand within it")
@@ -351,7 +351,7 @@ class Timing:
         count = -(-(busy + late) // message.period)
 
         def waiting(instance: int, window: int) -> int:
-            delay = blocking + instance * cost + self.lost(before, window + cost)
+            delay = blocking + instance * length + self.lost(before, window + length)
             for other in others:
                 delay += self.count(other, message, window + bit) * self.time(other)
             return delay
@@ -366,11 +366,11 @@ class Timing:
             self.same("arbitration", f"{own}_Needs{tail}", windows[-1], "the demand within it")
             needed = [f"{ada(m.element)}_C" for m in others]
             self.terms("arbitration", f"{own}_Needs{tail}", needed)
-        response = max(late + w + cost - n * message.period for n, w in enumerate(windows))
+        response = max(late + w + length - n * message.period for n, w in enumerate(windows))
         self.same("arbitration", f"{own}_R", response, f"the response time of {message.element}")
-        text = f"{message.element} can miss its deadline: R = {claim} > D = {message.deadline}"
+        text = f"{message.element} can miss its deadline: R = {claimed} > D = {message.deadline}"
         path, line = self.certificate.path, self.line(f"{own}_R")
-        self.report.agree("arbitration", path, line, claim <= message.deadline, text)
+        self.report.agree("arbitration", path, line, claimed <= message.deadline, text)
 
     # --- receptions, and values in several frames
 
@@ -462,6 +462,6 @@ class Timing:
                 self.report.skip(left)
 
 
-def _work(costs: dict[int, int], jobs: int) -> int:
+def _work(wcets: dict[int, int], jobs: int) -> int:
     """The time of so many consecutive jobs, the first of which executes all rows."""
-    return sum(-(-jobs // divisor) * cost for divisor, cost in costs.items())
+    return sum(-(-jobs // divisor) * wcet for divisor, wcet in wcets.items())

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart import rounded
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import spoken
 from ravenchart.editing.evaluation import Evaluation
 
 from .model import OpenModel
@@ -68,6 +68,6 @@ def _bounds(name: str, analysis: Analysis) -> Iterator[str]:
 
 def _said(name: str, bound: int | None, deadline: int) -> str:
     if bound is None:
-        return f"{name}: R has no bound, D = {spoken(deadline)}"
-    shown = spoken(bound)
-    return f"{name}: R = {shown}, D = {spoken(deadline)}"
+        return f"{name}: R has no bound, D = {rounded.down(deadline)}"
+    needed, allowed = rounded.against(bound, deadline)
+    return f"{name}: R = {needed}, D = {allowed}"

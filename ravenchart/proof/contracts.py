@@ -26,7 +26,7 @@ HELPS = {
     "the data imply it; or test it in the body and not require it",
     "ensures": "follow each way through the body: on one of them the condition does not hold",
 }
-_CALL = re.compile(r"\.(?P<home>Activities|Flows|\w+_Stand_In)\.(?P<name>\w+)")
+_CALL = re.compile(r"\.(?P<home>Activities|Flows|\w+_Fallback)\.(?P<name>\w+)")
 _UNSHOWN = re.compile(r"cannot prove (?P<condition>.*?)(?: \(e\.g\.|$| \[)")
 
 

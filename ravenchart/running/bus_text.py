@@ -6,10 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from ravenchart import rounded
 
 from .bus_watch import WatchedBus, WatchedMessage
 from .summary import columns
@@ -19,9 +22,10 @@ def tables(bus: WatchedBus) -> RenderableType:
     """Its load and counts, then its messages."""
     head = Text()
     head.append(f"{bus.bus}: ", style="bold")
-    head.append(f"{bus.interface}, {_seconds(bus.now)} s\nload at most ")
-    head.append(percent(bus.load), style="bold red" if is_above(bus) else "bold")
-    head.append(f", by the analysis {_bound(bus)}; frames {bus.frames}")
+    head.append(f"{bus.interface}, {rounded.instant(bus.now)} s\nload at most ")
+    load, bound = _loads(bus)
+    head.append(load, style="bold red" if is_above(bus) else "bold")
+    head.append(f", by the analysis {bound}; frames {bus.frames}")
     for word, number in _faults(bus):
         head.append(f", {word} {number}", style="bold red" if word != "unknown" else "")
     if bus.gone is not None:
@@ -31,10 +35,10 @@ def tables(bus: WatchedBus) -> RenderableType:
 
 def lines(bus: WatchedBus) -> Iterator[str]:
     """Its load and counts, then each message that has come."""
-    where = f"{bus.bus} {_seconds(bus.now)}"
+    where = f"{bus.bus} {rounded.instant(bus.now)}"
     faults = "".join(f" {word} {number}" for word, number in _faults(bus))
-    loads = f"load {percent(bus.load)} bound {_bound(bus)}"
-    yield f"{where} {loads} frames {bus.frames}{faults}"
+    load, bound = _loads(bus)
+    yield f"{where} load {load} bound {bound} frames {bus.frames}{faults}"
     for one in bus.messages:
         if one.frames:
             yield f"{where} {one.name} frames {one.frames} {shown_values(one)}".rstrip()
@@ -55,13 +59,16 @@ def is_above(bus: WatchedBus) -> bool:
     return bus.bound is not None and bus.load > bus.bound
 
 
-def _bound(bus: WatchedBus) -> str:
-    return "-" if bus.bound is None else percent(bus.bound)
+def _loads(bus: WatchedBus) -> tuple[str, str]:
+    """The load of the bus and its bound by the analysis."""
+    if bus.bound is None:
+        return rounded.percent(_exact(bus.load)), "-"
+    return rounded.shares_beside(_exact(bus.load), _exact(bus.bound))
 
 
-def percent(share: float) -> str:
-    """A share of the bus."""
-    return f"{100 * share:.1f} %"
+def _exact(share: float) -> Fraction:
+    """A share of a second, which is a whole number of ns."""
+    return Fraction(rounded.of_seconds(share), rounded.SECONDS.length)
 
 
 def _faults(bus: WatchedBus) -> list[tuple[str, int]]:
@@ -75,13 +82,9 @@ def _messages(bus: WatchedBus) -> Table:
         table.add_row(
             one.name,
             str(one.frames),
-            "-" if one.last is None else f"{(bus.now - one.last) / 1e9:.1f}",
-            "-" if one.shortest is None else f"{one.shortest / 1e6:.1f}",
-            "-" if one.period is None else f"{one.period / 1e6:g}",
+            "-" if one.last is None else rounded.age(bus.now - one.last),
+            rounded.MS.down(one.shortest),
+            rounded.MS.down(one.period),
             shown_values(one),
         )
     return table
-
-
-def _seconds(time: int) -> str:
-    return f"{time / 1e9:.3f}"

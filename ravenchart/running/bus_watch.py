@@ -233,7 +233,7 @@ def most_in_a_second(analysis: Analysis, bus: Bus) -> float | None:
         if found.bound is None:
             return None
         frame = found.frame
-        taken += -(-(SECOND + found.bound) // frame.period) * frame.cost
+        taken += -(-(SECOND + found.bound) // frame.period) * frame.transmission_time
     return taken / SECOND
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
+from ravenchart.gen.model.statechart import PseudoKind, Region, RegionId
 from ravenchart.gen.model.system import System
 
 
@@ -28,10 +28,9 @@ class NamedChart:
     """Each state, and the leaf states that are inside it, or itself."""
 
 
-def traced_chart(instance: str, region: str, lane: Lane) -> str:
-    """The name in traces of a top-level or orthogonal region."""
-    inside = "" if lane.owner is None else f".{lane.name}"
-    return f"{instance}.{region}{inside}"
+def traced_chart(instance: str, region: str, orthogonal: str | None = None) -> str:
+    """The name in traces of a top-level region, or of the orthogonal region of that name in it."""
+    return ".".join((instance, region) if orthogonal is None else (instance, region, orthogonal))
 
 
 def charts_of(system: System) -> dict[str, NamedChart]:
@@ -40,19 +39,20 @@ def charts_of(system: System) -> dict[str, NamedChart]:
     for instance in system.instances:
         node = system.nodes[0].name if len(system.nodes) == 1 else instance.node
         for region in instance.component.regions:
-            for lane in reversed(region.lanes()):
-                name = traced_chart(instance.name, region.name, lane)
-                found[name] = NamedChart(name, instance.name, node, dict(_states(region, lane)))
+            for one in reversed(region.concurrent_regions()):
+                orthogonal = None if one.owner is None else one.name
+                name = traced_chart(instance.name, region.name, orthogonal)
+                found[name] = NamedChart(name, instance.name, node, dict(_states(region, one)))
     return found
 
 
-def _states(region: Region, lane: Lane) -> Iterator[tuple[str, frozenset[str]]]:
+def _states(region: Region, one: RegionId) -> Iterator[tuple[str, frozenset[str]]]:
     """Each state of a region with its leaves there: an orthogonal state is one of them."""
-    own = [state for state in region.states if region.lane(state.name) == lane]
+    own = [state for state in region.states if region.concurrent_region(state.name) == one]
     leaves = [state.name for state in own if len(state.regions) != 1]
     for state in own:
         inside = (leaf for leaf in leaves if state.name in region.ancestors(leaf))
         yield state.name, frozenset(inside)
-    for end in region.pseudostates if lane.owner is None else ():
+    for end in region.pseudostates if one.owner is None else ():
         if end.kind is PseudoKind.TERMINATE:
             yield end.name, frozenset({end.name})

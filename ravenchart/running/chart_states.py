@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from ravenchart import rounded
 from ravenchart.analysis.system.observed import TRACE, is_of
 
 from .watched import WatchedController
@@ -70,4 +71,5 @@ def in_words(seen: SeenChart) -> str:
     if seen.state is None or seen.since is None:
         return "no active state"
     now = seen.at if seen.ended else time.monotonic()
-    return f"{seen.state} for {max(0.0, now - seen.since):.2f} s"
+    spent = rounded.of_seconds(max(0.0, now - seen.since))
+    return f"{seen.state} for {rounded.up(spent)}"

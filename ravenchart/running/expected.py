@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from ravenchart import rounded
 from ravenchart.analysis.present.report import Comparison, Execution
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import TRACE, VALUES, Observation
@@ -139,4 +140,4 @@ def not_judged(
     late = any(row.is_explained(withheld) for row in took)
     if not late and not any(excused(compared, executed, ended)):
         return None
-    return f"the host withheld the core for up to {withheld / 1e6:.1f} ms"
+    return f"the host withheld the core for up to {rounded.up(withheld)}"

@@ -9,10 +9,10 @@ import signal
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from ravenchart import rounded
 from ravenchart.analysis.present.report import Comparison, StepRow
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation
-from ravenchart.analysis.units import spoken
 from ravenchart.gen.model.system import Processor, System
 from ravenchart.hw_can.bench.forms import TraceCheck
 from ravenchart.hw_can.bench.runner import ScenarioResult
@@ -80,12 +80,12 @@ def unaccounted(
         if processor.released_by is None and counts.releases < least:
             yield (
                 f"{processor.name} completed {counts.releases} releases in "
-                f"{counts.now / 1e9:.3f} s, but at least {least} were due by then"
+                f"{rounded.instant(counts.now)} s, but at least {least} were due by then"
             )
         elif counts.releases > most:
             yield (
                 f"{processor.name} completed {counts.releases} releases in "
-                f"{counts.now / 1e9:.3f} s, but no more than {most} were due by then"
+                f"{rounded.instant(counts.now)} s, but no more than {most} were due by then"
             )
 
 
@@ -131,19 +131,23 @@ def failures(
             yield "the trace holds no processor's counts"
     if ended.real_time:
         yield from (
-            f"{row.task} was observed to take {spoken(row.observed)}, "
-            f"above its bound of {spoken(row.bound or 0)}"
+            f"{row.task} was observed to take {_above(row.observed, row.bound or 0)}"
             for row in compared
             if row.exceeded and not row.explained
         )
         yield from (
-            f"the chain {row.chain} was observed to react after {spoken(row.observed)}, "
-            f"above its bound of {spoken(row.bound)}"
+            f"the chain {row.chain} was observed to react after {_above(row.observed, row.bound)}"
             for row in took
             if row.exceeded
             and not row.is_explained(withheld)
             and not any(other.explained for other in compared)
         )
+
+
+def _above(observed: int, bound: int) -> str:
+    """An observed time that is above its bound."""
+    longest, limit = rounded.beside(observed, bound)
+    return f"{longest}, above its bound of {limit}"
 
 
 def _reached(check: TraceCheck, seen: Observation) -> tuple[bool, str, float]:
@@ -155,19 +159,19 @@ def _reached(check: TraceCheck, seen: Observation) -> tuple[bool, str, float]:
         visited = ", ".join(seen.states_visited()[check.region]) or "none"
         return False, f"never: it visited {visited}", 0.0
     entered = entries[-1]
-    passed, outcome = True, f"at {entered / 1e9:.3f} s"
+    passed, outcome = True, f"at {rounded.instant(entered)} s"
     if check.within is not None and check.port is not None:
         arrivals = [record.time for record in seen.of("arrived", check.port)]
         if not arrivals:
             return False, f"nothing arrived at {check.port}", entered / 1e9
         since = arrivals[-1] if check.after_last else _silence(arrivals)
-        delay = (next((e for e in entries if e >= since), entered) - since) / 1e9
-        passed, outcome = 0 <= delay <= check.within, f"after {delay * 1e3:.1f} ms"
+        delay = next((e for e in entries if e >= since), entered) - since
+        passed, outcome = 0 <= delay / 1e9 <= check.within, f"after {rounded.up(delay)}"
     if check.then is not None:
         later = [v.start for v in seen.visits(check.region) if v.state == check.then]
         if not later or later[-1] < entries[0]:
             return False, f"{outcome}, but never in {check.then} later", entered / 1e9
-        outcome += f", then at {later[-1] / 1e9:.3f} s"
+        outcome += f", then at {rounded.instant(later[-1])} s"
     return passed, outcome, entered / 1e9
 
 

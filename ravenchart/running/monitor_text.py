@@ -6,12 +6,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from ravenchart.analysis.units import microseconds
+from ravenchart import rounded
 
 from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor, WatchedQueue
 from .summary import columns
@@ -70,8 +71,8 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
     """One node as lines: what happened, and with ``counts`` how each processor and chart is."""
     where = f"{name} " if name else ""
     for event in node.events:
-        yield f"{where}{_seconds(event.at)} {event.element} {event.kind} {event.what}"
-    now = _seconds(node.now)
+        yield f"{where}{rounded.instant(event.at)} {event.element} {event.kind} {event.what}"
+    now = rounded.instant(node.now)
     if node.unlisted:
         yield f"{where}{now} {node.unlisted} more transitions and faults, not listed"
     if not counts:
@@ -80,8 +81,7 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
         due = "" if one.due is None else f"due {one.due} "
         yield (
             f"{where}{now} {one.name} processor {due}completed {one.completed} misses "
-            f"{one.misses} last {_time(one.last_response)} us worst "
-            f"{microseconds(one.worst_response)} us R {_time(one.bound)} us {one.word}"
+            f"{one.misses} {_responses(one)} {one.word}"
         )
     for chart in node.charts:
         if chart.state is not None:
@@ -99,12 +99,21 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
         yield f"{where}{now} {text}"
 
 
+def _responses(one: WatchedProcessor) -> str:
+    """The last and the worst response of a processor, and its bound."""
+    last = "-" if one.last_response is None else rounded.up(one.last_response)
+    if one.bound is None:
+        return f"last {last} worst {rounded.up(one.worst_response)} R -"
+    worst, bound = rounded.beside(one.worst_response, one.bound)
+    return f"last {last} worst {worst} R {bound}"
+
+
 def _head(title: str, node: WatchedNode, age: float) -> Text:
     head = Text()
     head.append(f"{title}: ", style="bold")
     bad = node.process is None and not node.ended
     head.append(state_of(node), style="bold red" if bad else "bold")
-    head.append(f", {_seconds(node.now)} s, snapshot {node.sequence}")
+    head.append(f", {rounded.instant(node.now)} s, snapshot {node.sequence}")
     if node.process is not None and age > LATE:
         head.append(f", no news for {age:.1f} s", style="bold red")
     if node.real_time is False:
@@ -113,20 +122,21 @@ def _head(title: str, node: WatchedNode, age: float) -> Text:
 
 
 def _processors(found: Sequence[WatchedProcessor]) -> Table:
-    table = columns(
-        "processor", "due>", "completed>", "misses>", "last us>", "worst us>", "R us>", "ratio>", ""
-    )
+    unit = rounded.unit_of(time for one in found for time in (one.worst_response, one.bound))
+    times = (f"{name} {unit.name}>" for name in ("last", "worst", "R"))
+    table = columns("processor", "due>", "completed>", "misses>", *times, "ratio>", "")
     for one in found:
         bad = one.misses > 0 or one.word == "ABOVE"
+        worst, bound = unit.beside(one.worst_response, one.bound)
         table.add_row(
             one.name,
             "-" if one.due is None else str(one.due),
             str(one.completed),
             str(one.misses),
-            _time(one.last_response),
-            microseconds(one.worst_response),
-            _time(one.bound),
-            f"{100 * one.worst_response / one.bound:.0f} %" if one.bound else "-",
+            unit.up(one.last_response),
+            worst,
+            bound,
+            rounded.percent(Fraction(one.worst_response, one.bound)) if one.bound else "-",
             one.word,
             style="bold red" if bad else "",
         )
@@ -148,7 +158,7 @@ def _charts(node: WatchedNode) -> Table:
     for one in node.charts:
         queue = queues.get(one.name)
         fill = ("", "") if queue is None else (_waiting(queue), str(queue.highest))
-        spent = "-" if one.since is None else f"{(node.now - one.since) / 1e9:.1f}"
+        spent = "-" if one.since is None else rounded.age(node.now - one.since)
         style = "dim" if one.state is None else ""
         table.add_row(one.name, one.state or "-", spent, str(one.transitions), *fill, style=style)
     return table
@@ -167,7 +177,7 @@ def _events(found: Sequence[WatchedEvent]) -> Table:
     for one in found:
         what = one.what if one.kind == "transition" else f"FAULT {one.what}"
         style = "" if one.kind == "transition" else "red"
-        table.add_row(_seconds(one.at), one.element, what, style=style)
+        table.add_row(rounded.instant(one.at), one.element, what, style=style)
     return table
 
 
@@ -184,7 +194,7 @@ def _traffic(node: WatchedNode) -> Table:
         cells = (found.get(kind, "") for kind in kinds) if "state" not in found else (
             found["state"], "", "", "",
         )  # fmt: skip
-        ago = f"{max(0, node.now - last[name]) / 1e9:.1f}"
+        ago = rounded.age(node.now - last[name])
         table.add_row(name, *cells, ago, waiting.get(name, ""))
     return table
 
@@ -192,18 +202,10 @@ def _traffic(node: WatchedNode) -> Table:
 def _values(node: WatchedNode) -> Table:
     table = columns("recorded value", "last>", "", "recorded>", "s ago>")
     for one in node.values:
-        ago = f"{max(0, node.now - one.last) / 1e9:.1f}"
+        ago = rounded.age(node.now - one.last)
         table.add_row(one.name, one.value, one.unit, str(one.count), ago)
     return table
 
 
 def _waiting(queue: WatchedQueue) -> str:
     return f"{'?' if queue.waiting is None else queue.waiting} of {queue.depth}"
-
-
-def _time(time: int | None) -> str:
-    return "-" if time is None else microseconds(time)
-
-
-def _seconds(time: int) -> str:
-    return f"{time / 1e9:.3f}"

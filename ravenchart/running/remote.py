@@ -29,6 +29,7 @@ from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Literal, TypeVar
 
+from ravenchart import rounded
 from ravenchart.building import checking
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import Bench, Station, press
@@ -114,7 +115,8 @@ def _last(seen: SeenChart) -> str:
     lost = f"; {seen.lost} trace records were lost" if seen.lost else ""
     if seen.ended:
         return f"the controller has ended; last {in_words(seen)}{lost}"
-    return f"last {in_words(seen)}, seen {time.monotonic() - seen.at:.2f} s ago{lost}"
+    age = rounded.up(rounded.of_seconds(time.monotonic() - seen.at))
+    return f"last {in_words(seen)}, seen {age} ago{lost}"
 
 
 class RemoteSystem:
@@ -377,8 +379,8 @@ class RemoteSystem:
         with self._lock:
             if waiting.message in self._last:
                 at, values = self._last[waiting.message]
-                age = time.monotonic() - at
-                return NoAnswerError(f"{told}: last {values[waiting.name]}, {age:.2f} s ago")
+                age = rounded.up(rounded.of_seconds(time.monotonic() - at))
+                return NoAnswerError(f"{told}: last {values[waiting.name]}, {age} ago")
             heard = ", ".join(sorted(self._last)) or "none"
         rate = self.vocabulary.bus.bit_rate
         hint = f"is the controller on this bus, at {rate} bit/s? Messages received: {heard}"

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from operator import attrgetter
 
+from ravenchart import rounded
 from ravenchart.analysis.system.observed import (
     TRACE,
     VALUE,
@@ -109,7 +110,9 @@ class ReplayedController:
         if self._simulated:
             shown.not_seen = [SIMULATED if one == NO_COUNTS else one for one in shown.not_seen]
         elif not number:
-            first = f"before {self._reports[0].at / 1e9:.3f} s" if self._reports else "at all"
+            first = (
+                f"before {rounded.instant(self._reports[0].at)} s" if self._reports else "at all"
+            )
             counts = "counts of processors, queues of charts, faults and losses"
             missing = f"{counts}: the trace has none {first}"
             shown.not_seen = [missing if one == NO_COUNTS else one for one in shown.not_seen]

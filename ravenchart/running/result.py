@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from ravenchart import rounded
 from ravenchart.analysis.present.report import Comparison, Execution, FrameRow, StepRow
 from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.observed import Observation
-from ravenchart.analysis.units import spoken
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.runner import ScenarioResult
 from ravenchart.hw_can.bench.scenario import Scenario
@@ -75,13 +75,13 @@ def notes(
     """Remarks for the reader that are no failures."""
     for row in executed:
         if row.exceeded:
-            longest, wcet = spoken(row.observed), spoken(row.wcet)
+            longest, wcet = rounded.beside(row.observed, row.wcet)
             yield f"{row.row} ran for {longest}, above its WCET of {wcet}"
     for task in compared:
         if task.word == "host" and ended.real_time:
             yield (
-                f"{task.task} took {spoken(task.observed)}, above its bound: the host "
-                f"withheld the core for up to {spoken(task.withheld)}"
+                f"{task.task} took {rounded.up(task.observed)}, above its bound: the host "
+                f"withheld the core for up to {rounded.up(task.withheld)}"
             )
     reasons = {f"{ERROR}{reason}" for reason in ended.reasons}
     said = (line for line in ended.warnings if line not in reasons)

@@ -20,6 +20,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from ravenchart import rounded
 from ravenchart.hw_can.bench.peer import FrameValues, Value
 from ravenchart.hw_can.bench.quantities import time_of
 
@@ -103,7 +104,7 @@ class Shell:
         name, text, *limit = self._at_least("wait_for", told, 2)
         timeout = _time(limit, "wait_for") if limit else PATIENCE
         took = self.robot.wait_for(name, value_of(text), timeout)
-        self._say(f"{name} is {text} after {took:.3f} s")
+        self._say(f"{name} is {text} after {rounded.up(rounded.of_seconds(took))}")
 
     def _wait(self, told: Sequence[str]) -> None:
         time.sleep(_time(self._at_least("wait", told, 1), "wait"))
@@ -116,14 +117,14 @@ class Shell:
             charts = [*seen]
         table = _columns("message", "age s", "values")
         for name in messages:
-            age = f"{self.robot.age(name):.2f}" if name in last else "-"
+            age = _age(self.robot.age(name)) if name in last else "-"
             values = self._with_units(name, last[name]) if name in last else "none came"
             table.add_row(name, age, escape(values))
         if messages:
             self.out.print(table)
         table = _columns("chart", "age s", "state")
         for name in charts:
-            age = f"{time.monotonic() - seen[name].at:.2f}" if name in seen else "-"
+            age = _age(time.monotonic() - seen[name].at) if name in seen else "-"
             table.add_row(name, age, in_words(seen[name]) if name in seen else "not seen")
         if charts:
             self.out.print(table)
@@ -258,6 +259,10 @@ class Shell:
         except WordError:
             return []
         return [str(choice) for choice in (signal.choices or {}).values()]
+
+
+def _age(seconds: float) -> str:
+    return rounded.age(rounded.of_seconds(seconds))
 
 
 def _columns(name: str, age: str, what: str) -> Table:

@@ -6,15 +6,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from ravenchart import rounded
 from ravenchart.analysis.present.report import Comparison, FrameRow, StepRow
 from ravenchart.analysis.system.journeys import Journey
-from ravenchart.analysis.units import microseconds
 
 from .measured import WARNING, Measurement
 
@@ -25,7 +26,8 @@ def print_steps(console: Console, steps: Sequence[StepRow]) -> None:
     for step in steps:
         outcome = step.outcome if step.passed else f"FAILED: {step.outcome}"
         style = "" if step.passed else "bold red"
-        table.add_row(f"{step.at:5.2f}", escape(step.text), escape(outcome), style=style)
+        at = rounded.instant(rounded.of_seconds(step.at))
+        table.add_row(at, escape(step.text), escape(outcome), style=style)
     _section(console, "steps", table)
 
 
@@ -50,16 +52,19 @@ def print_frames(console: Console, frames: Sequence[FrameRow]) -> None:
 
 def print_comparison(console: Console, compared: Sequence[Comparison], *, comparable: bool) -> None:
     """Observed beside bound."""
-    table = columns("processor", "releases>", "misses>", "observed us>", "bound us>", "ratio>", "")
+    unit = rounded.unit_of(time for row in compared for time in (row.observed, row.bound))
+    times = (f"observed {unit.name}>", f"bound {unit.name}>")
+    table = columns("processor", "releases>", "misses>", *times, "ratio>", "")
     for row in compared:
+        observed, bound = unit.beside(row.observed, row.bound)
         bad = row.word in ("MISS", "ABOVE") and (comparable or row.misses > 0)
         table.add_row(
             row.task,
             str(row.releases),
             str(row.misses),
-            microseconds(row.observed),
-            "-" if row.bound is None else microseconds(row.bound),
-            f"{100 * row.ratio:.0f} %" if row.bound else "-",
+            observed,
+            bound,
+            rounded.percent(row.ratio) if row.bound else "-",
             row.word if comparable or bad else "",
             style="bold red" if bad else "",
         )
@@ -70,14 +75,17 @@ def print_comparison(console: Console, compared: Sequence[Comparison], *, compar
 
 def print_journeys(console: Console, took: Sequence[Journey]) -> None:
     """The longest reaction of each chain beside its bound."""
-    table = columns("chain", "reactions>", "observed us>", "bound us>", "limit us>", "")
+    unit = rounded.unit_of(time for row in took for time in (row.observed, row.bound))
+    times = (f"{name} {unit.name}>" for name in ("observed", "bound", "limit"))
+    table = columns("chain", "reactions>", *times, "")
     for row in took:
+        observed, bound = unit.beside(row.observed, row.bound)
         table.add_row(
             row.chain,
             str(row.count),
-            microseconds(row.observed),
-            microseconds(row.bound),
-            microseconds(row.limit),
+            observed,
+            bound,
+            unit.down(row.limit),
             "ABOVE" if row.exceeded else "ok",
             style="bold red" if row.exceeded else "",
         )
@@ -87,13 +95,15 @@ def print_journeys(console: Console, took: Sequence[Journey]) -> None:
 def print_measurement(console: Console, found: Measurement) -> None:
     """Measured execution times beside the WCETs of the model, and what they leave out."""
     bounded = any(one.bound is not None for one in found.rows)
-    names = ["row", "measured us>", f"+ {found.margin} % us>", "wcet us>", "ratio>", ""]
-    table = columns(*names[:4], *(["bound us>"] if bounded else []), *names[4:])
+    unit = rounded.unit_of(time for one in found.rows for time in (one.wcet, one.measured))
+    names = ["measured", f"+ {found.margin} %", "wcet", *(["bound"] if bounded else [])]
+    table = columns("row", *(f"{name} {unit.name}>" for name in names), "ratio>", "")
     for one in found.rows:
-        times = [one.measured, one.proposed, one.wcet, *([one.bound] if bounded else [])]
-        ratio = "-" if one.measured is None else f"{100 * one.measured / one.wcet:.0f} %"
+        measured, wcet = unit.beside(one.measured, one.wcet)
+        cells = [measured, unit.up(one.proposed), wcet, *([unit.up(one.bound)] if bounded else [])]
+        share = None if one.measured is None else Fraction(one.measured, one.wcet)
+        ratio = "-" if share is None else rounded.percent(share)
         word = "ABOVE" if one.words else "" if one.measured is None else "ok"
-        cells = ("-" if time is None else microseconds(time) for time in times)
         table.add_row(one.row, *cells, ratio, word, style="bold red" if one.words else "")
     _section(console, f"execution times: {found.run}", table)
     lines = [f"{WARNING[0].upper()}{WARNING[1:]}.", f"Times are {found.clock}."]

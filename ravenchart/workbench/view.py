@@ -13,11 +13,12 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
+from ravenchart import rounded
 from ravenchart.analysis.present.bars import row_of
 from ravenchart.analysis.present.sentences import overload_lines, verdict_line
 from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import microseconds, percent
+from ravenchart.analysis.units import microseconds
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
 from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
@@ -242,9 +243,9 @@ def _loads(good: Analysis, saved: Analysis) -> list[Json]:
             "name": name,
             "kind": "bus" if name in buses else "core",
             "share": min(100.0, round(float(100 * load), 2)),
-            "text": percent(load),
+            "text": rounded.percent(load),
             "over": load > 1,
-            "saved_text": percent(saved.loads[name]) if name in saved.loads else None,
+            "saved_text": rounded.percent(saved.loads[name]) if name in saved.loads else None,
         }
         for name, load in good.loads.items()
     ]

@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What keeps a controller from starting: a device that fails its start.
---  Programs whose devices have such operations have this unit.
+--  A device that fails its start keeps the controller from starting. Programs
+--  whose devices have start operations have this unit.
 --
 --  Guarantees   the reason reaches the host; the caller ends the program
 --  Tasking      the main program alone
 --  Timing       may wait for the host
---  Assumptions  ASM-019, the body does what is said here
+--  Assumptions  ASM-019, the body does what this specification states
 
 package Ravenchart.Device_Failures
   with

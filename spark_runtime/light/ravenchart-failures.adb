@@ -18,8 +18,8 @@ is
    procedure Make_All_Safe
    with Import, Convention => C, External_Name => "ravenchart_make_safe";
    pragma Weak_External (Make_All_Safe);
-   --  Of a generated program with devices that can be made safe. Other
-   --  programs do not have it: its address is then null.
+   --  Defined in a generated program with devices that can be made safe. In
+   --  other programs its address is null.
 
    procedure Last_Chance (Message : System.Address; Line : Integer)
    with
@@ -27,9 +27,10 @@ is
      Convention    => C,
      External_Name => "__gnat_last_chance_handler",
      No_Return;
-   --  An exception in any task: this run-time library propagates none. It
-   --  ends the controller, behind its devices where they can be made safe.
-   --  Message ends with a zero; Line is 0 where it is not a file's name.
+   --  Handles an exception in any task: this run-time library propagates none.
+   --  It makes the devices safe where they can be, then ends the controller.
+   --  Message ends with a zero; Line is 0 where Message is not the name of a
+   --  file.
 
    type Bounded_Name is record
       Length : Natural range 0 .. Longest_Name := 0;
@@ -64,7 +65,7 @@ is
    is
       procedure Add
         (Name : Bounded_Name; Id : Ada.Task_Identification.Task_Id);
-      --  There is a task with this name.
+      --  Note that there is a task with this name.
 
       procedure Find
         (Id : Ada.Task_Identification.Task_Id; Name : out Bounded_Name);
@@ -79,7 +80,7 @@ is
       function Any return Boolean;
 
       function Has_Tasks return Boolean;
-      --  Has any task begun? Then all packages are elaborated.
+      --  Has any task begun? All packages are then elaborated.
 
       procedure Take (Item : out Reason; Found : out Boolean);
       --  The oldest reason that was not taken.
@@ -97,7 +98,7 @@ is
    --  Is this body elaborated, so that there may be reasons?
 
    Ending : Boolean := False;
-   --  Is this the second exception, in making devices safe?
+   --  Is this a second exception, raised while devices are made safe?
 
    -------------
    -- Bounded --
@@ -275,7 +276,7 @@ is
       Here   : System.Address := Message;
       Name   : Bounded_Name;
    begin
-      --  The line that this interrupts is ended first.
+      --  End the line that this one interrupts.
       Boards.Put ((1 => ASCII.LF));
       if Elaborated then
          Put_Reasons;

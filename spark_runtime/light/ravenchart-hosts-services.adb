@@ -5,7 +5,7 @@ with Ravenchart.Boards;
 
 package body Ravenchart.Hosts.Services
   with SPARK_Mode => Off
---  ASM-002. The serial line and the end of a run are matters of the board.
+--  ASM-002. The serial line and the end of a run depend on the board.
 is
    Model        : String (1 .. 84) := (others => ' ');
    Model_Length : Natural := 0;
@@ -14,8 +14,8 @@ is
    Model_Period : constant Nanoseconds := 1_000_000_000;
 
    Next_Model : Nanoseconds := Model_Period;
-   --  When the M line is written again: who begins to read the serial line of
-   --  a running board then knows its model.
+   --  The time of the next M line. A reader that connects to the serial line
+   --  of a running board learns its model from it.
 
    procedure Start is null;
    --  The serial line is ready from the start of the board.

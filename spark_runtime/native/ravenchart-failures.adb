@@ -68,8 +68,8 @@ is
    procedure Make_All_Safe
    with Import, Convention => C, External_Name => "ravenchart_make_safe";
    pragma Weak_External (Make_All_Safe);
-   --  Of a generated program with devices that can be made safe. Other
-   --  programs do not have it: its address is then null.
+   --  Defined in a generated program with devices that can be made safe. In
+   --  other programs its address is null.
 
    procedure C_Exit (Status : C_Int)
    with Import, Convention => C, External_Name => "_exit", No_Return;
@@ -82,7 +82,8 @@ is
    --  refuses the ceiling of every protected object, and each call of one
    --  would raise Program_Error.
    Least_Urgent   : constant Scheduling_Parameter := (Priority => 1);
-   --  That of the environment task, which has its turn under this policy.
+   --  The priority of the environment task, which still runs under this
+   --  policy.
    Write_Only     : constant C_Int := 8#1#;
    Nonblocking    : constant C_Int := 8#4000#;
    No_File        : constant C_Int := -1;
@@ -97,7 +98,7 @@ is
    end record;
 
    function Bounded (Text : String) return Bounded_Text;
-   --  Text, or as much of it as there is place for.
+   --  Text, cut off where it does not fit.
 
    Of_Memory : constant String :=
      "a stack overflow, or an access to memory that the task does not have";
@@ -106,7 +107,8 @@ is
      (X : Ada.Exceptions.Exception_Occurrence) return Boolean
    is (Ada.Exceptions."="
          (Ada.Exceptions.Exception_Identity (X), Storage_Error'Identity));
-   --  Then the message has a line of the run-time library and no more.
+   --  Is X such a failure? Its message is then only a line of the run-time
+   --  library.
 
    type Known_Task is record
       Id     : Ada.Task_Identification.Task_Id :=
@@ -122,14 +124,15 @@ is
 
    subtype Stack_Place is
      System.Storage_Elements.Storage_Array (1 .. 32_768);
-   --  As much as the run-time library gives the environment task.
+   --  The same size as the run-time library gives the environment task.
 
    type Stack_Table is array (Task_Index) of aliased Stack_Place;
 
    Signal_Stacks : Stack_Table;
-   --  Where a task handles the signal of a stack that is full. Tasks of the
-   --  restricted run-time library have none of their own, and without one the
-   --  kernel ends the process. A page that is never used takes no memory.
+   --  The stack on which a task handles the signal of a stack overflow. Tasks
+   --  of the restricted run-time library have none of their own, and without
+   --  one the kernel ends the process. A page that is never used takes no
+   --  memory.
 
    subtype Reason_Index is Positive range 1 .. 32;
 
@@ -145,11 +148,11 @@ is
    is
       procedure Add
         (Name : String; Thread : Thread_Id; Number : out Natural);
-      --  The caller is a task with this name and thread. Its number is 0
-      --  where the table is full.
+      --  Note that the caller is a task with this name and thread. Its number
+      --  is 0 where the table is full.
 
       procedure Note_Silence (Name : String; Culprit : out Thread_Search);
-      --  Keep the reason; of the first silence, the thread that may hold up
+      --  Keep the reason; of the first silence, also the thread that may delay
       --  the others.
 
       procedure On_End
@@ -161,7 +164,7 @@ is
       function Any return Boolean;
 
       function Has_Tasks return Boolean;
-      --  Has any task begun? Then all packages are elaborated.
+      --  Has any task begun? All packages are then elaborated.
 
       procedure Take (Reason : out Bounded_Text);
       --  The oldest reason that was not taken; empty when there is none.
@@ -182,21 +185,21 @@ is
      Convention    => C,
      External_Name => "__gnat_last_chance_handler",
      No_Return;
-   --  An exception in the environment task that nothing handles, in the
-   --  elaboration of any package or in the main program: it ends the process,
-   --  behind its devices, where they can be made safe.
-   --  The handler of the run-time library, in whose place this one is, waits
-   --  for the other tasks, which never end.
+   --  Handles an exception in the environment task, from the elaboration of a
+   --  package or from the main program, that nothing else handles. It makes
+   --  the devices safe where they can be, then ends the process. It replaces
+   --  the handler of the run-time library, which waits for the other tasks,
+   --  and these never end.
 
    Ending : Boolean := False;
-   --  Is this the second exception, in making devices safe?
+   --  Is this a second exception, raised while devices are made safe?
 
    Elaborated : Boolean := False;
    --  Is this body elaborated, so that there may be reasons?
 
    Watchdog : C_Int := No_File;
-   --  What the environment variable RAVENCHART_WATCHDOG names, if it can be
-   --  written: a watchdog of Linux, which each byte feeds.
+   --  The file that the environment variable RAVENCHART_WATCHDOG names, if it
+   --  can be written: a watchdog of Linux, which each byte feeds.
 
    -------------
    -- Bounded --

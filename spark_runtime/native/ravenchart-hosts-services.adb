@@ -7,9 +7,8 @@ with Ravenchart.Hosts.Snapshots;
 
 package body Ravenchart.Hosts.Services
   with SPARK_Mode => Off
---  ASM-002. Signals, files and the scheduling policy are reached through the
---  C library, by address; SPARK has no words for a handler that the kernel
---  calls.
+--  ASM-002. Signals, files and the scheduling policy are reached through the C
+--  library, by address; SPARK cannot describe a handler that the kernel calls.
 is
    use type Interfaces.C.int;
    use type Interfaces.C.long;
@@ -73,10 +72,10 @@ is
 
    Stop_Flag : Boolean := False
    with Atomic;
-   --  Set by the handler, on whichever thread the kernel chose.
+   --  Set by the handler, on the thread that the kernel chooses.
 
    Report_File : C_Int := No_File;
-   --  No_File also after a failed write: the report is then cut short.
+   --  No_File also after a failed write: the report then ends there.
 
    subtype Buffer_Length is Natural range 0 .. 16_384;
 
@@ -85,7 +84,7 @@ is
 
    procedure Request_Stop (Signal : C_Int)
    with Convention => C;
-   --  The handler.
+   --  The handler of both signals.
 
    procedure Write_All (File : in out C_Int; Text : String);
    --  Write Text; File becomes No_File when it cannot be written.
@@ -202,7 +201,7 @@ is
    ------------
 
    procedure Finish (Success : Boolean) is
-      --  What the user's own bodies printed goes out as well.
+      --  Flush the output of the user's own bodies as well.
       Ignored : constant C_Int := C_Flush (System.Null_Address);
    begin
       Snapshots.Close;

@@ -45,9 +45,9 @@ is
    procedure Put_All
    with Import, External_Name => "ravenchart_put_all";
    pragma Weak_External (Put_All);
-   --  Reports.Put_All of a generated program, under this name by the linker.
-   --  Where a program is linked otherwise, its address is null, and snapshots
-   --  have no counts of processors before the end.
+   --  Reports.Put_All of a generated program, linked by this name. In other
+   --  programs its address is null, and snapshots have no counts of processors
+   --  before the end.
 
    --  The numbers of Linux
 
@@ -56,7 +56,7 @@ is
    Try_Lock       : constant C_Int := 2;
    No_File        : constant C_Int := -1;
 
-   --  What there was of each element
+   --  The records of each element
 
    subtype Kept_Element is Element_Id range 0 .. 16_383;
 
@@ -69,10 +69,10 @@ is
    Summaries : array (Kept_Element, Traces.Trace_Kind) of Summary;
 
    Values : array (Kept_Element) of Summary;
-   --  Of recorded values.
+   --  The same, of recorded values.
 
    Last_Element : Kept_Element := 0;
-   --  The greatest that there was a record of.
+   --  The greatest element that has a record.
 
    --  Texts
 
@@ -87,7 +87,7 @@ is
 
    Recent : array (Recent_Count) of Kept_Line;
    Newest : Recent_Count := 0;
-   --  The last transitions and faults, in a circle.
+   --  The last transitions and faults, as a ring.
 
    Head : Kept_Line;
    --  The E line and, behind it, the M line.
@@ -102,12 +102,12 @@ is
    --  Missing counts the lines that found no room.
 
    Counts : Bounded_Text;
-   --  The last N line, and all counts that came behind it.
+   --  The last N line, and all counts that followed it.
 
    Snapshot : Bounded_Text;
 
    Last_Lines : constant := 80;
-   --  The room of a snapshot that is kept for its last three lines.
+   --  The room of a snapshot that is reserved for its last three lines.
 
    --  State
 
@@ -115,7 +115,7 @@ is
    Ended    : Boolean := False;
    Sequence : Event_Count := 0;
    Dropped  : Event_Count := 0;
-   --  Records of elements behind the last Kept_Element.
+   --  Counts records of elements beyond the last Kept_Element.
 
    Next     : Ada.Real_Time.Time := Ada.Real_Time.Time_First;
 
@@ -126,7 +126,7 @@ is
      (To      : in out Bounded_Text;
       Text    : String;
       Reserve : Natural := Last_Lines);
-   --  Add Text as a whole, where it leaves that much room.
+   --  Add all of Text, if Reserve then remains free; else count it as missing.
 
    procedure Note_Record (Text : String);
    --  Text is a T line, or a V line.
@@ -139,7 +139,7 @@ is
       Number : Long_Long_Integer;
       Width  : Positive := 1)
    with Pre => Width <= 20;
-   --  Add a blank and Number in decimal, with zeros in front for its Width.
+   --  Add a blank and Number in decimal, with leading zeros up to Width.
 
    procedure Append_Count
      (Kind : String; Element : Kept_Element; Kept : Summary);
@@ -237,10 +237,10 @@ is
       Place : Positive := Text'First + 2;
 
       procedure Get (Number : out Long_Long_Integer);
-      --  The number at Place, which is then behind it and its blank.
+      --  Read the number at Place, and move Place behind it and its blank.
 
       procedure Count (Kept : in out Summary);
-      --  One more, and this the last.
+      --  Count one more record, and keep it as the last one.
 
       procedure Get (Number : out Long_Long_Integer) is
          Negative : constant Boolean := Text (Place) = '-';
@@ -369,7 +369,7 @@ is
       Snapshot.Missing := Counts.Missing;
       Append (Snapshot, Head.Text (1 .. Head.Length));
       for Unused in Recent_Count loop
-         Place := Place + 1;  --  from the oldest one
+         Place := Place + 1;  --  from the oldest line on
          Append (Snapshot, Recent (Place).Text (1 .. Recent (Place).Length));
       end loop;
       Append (Snapshot, Counts.Text (1 .. Counts.Length));

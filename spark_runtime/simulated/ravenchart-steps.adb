@@ -13,7 +13,7 @@ package body Ravenchart.Steps is
    Line : Unbounded_String;
 
    function Seconds (Instant : Long_Long_Integer) return String;
-   --  In s, with 3, 6 or 9 decimals: as few as are exact.
+   --  Instant in s, with 3, 6 or 9 decimals: as few as are exact.
 
    -------------
    -- Seconds --

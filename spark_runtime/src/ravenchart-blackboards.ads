@@ -13,7 +13,7 @@ with System;
 generic
    type Element_Type is private;
    Initial : Element_Type;
-   --  What readers see before the first Write.
+   --  The value before the first Write.
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
 package Ravenchart.Blackboards

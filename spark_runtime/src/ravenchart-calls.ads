@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Calls of a command on another node, told apart by their numbers: of its
---  caller the one that waits for a reply, of its provider the last one heard.
---  And what is read there: how long its reader waits for it, and when its
---  provider sends it.
+--  Calls of a command on another node, distinguished by their numbers. The
+--  caller keeps the call that waits for a reply, the provider the last call
+--  received. The same package counts how long a reader waits for a value of
+--  another node, and when the provider sends one.
 --
---  Guarantees   at most one call waits; a reply is awaited only while the call
---               of its number waits, and a call is heard once
+--  Guarantees   at most one call waits; a reply is accepted only while the
+--               call of its number waits; a repeated call is recognised
 --  Tasking      none of its own
 --  Timing       constant
 
@@ -19,7 +19,7 @@ is
    use type Queueing.Put_Status;
 
    subtype Call_Number is Number range 0 .. 255;
-   --  One byte of a frame.
+   --  The number of a call, one byte of a frame.
 
    function Following (Item : Call_Number) return Call_Number
    is (if Item = Call_Number'Last then 0 else Item + 1)
@@ -29,20 +29,20 @@ is
    --  The caller
 
    subtype Execution_Limit is Execution_Count range 1 .. Execution_Count'Last;
-   --  Executions of its caller after which a call is given up.
+   --  Executions of the caller after which a call is given up.
 
    type Call is record
       Last : Call_Number     := Call_Number'Last;
       Left : Execution_Count := 0;
    end record;
-   --  The number of the last call, and the executions that it has left to
-   --  wait; with none, no call waits.
+   --  The number of the last call, and the executions for which it still
+   --  waits; with 0, no call waits.
 
    type Reply_Status is (Awaited, Late);
-   --  Late: its call was given up, or another frame brought its reply.
+   --  Late: the call was given up, or an earlier frame brought its reply.
 
    type Wait_Status is (Within_Limit, Timed_Out);
-   --  Timed_Out: no reply has come, and nobody waits for it any more.
+   --  Timed_Out: no reply has come, and the call is given up.
 
    function Waits (Item : Call) return Boolean
    is (Item.Left > 0)
@@ -72,7 +72,7 @@ is
        (if Waits (Item'Old) and then Number = Item'Old.Last
         then Status = Awaited and then Item = (Item'Old.Last, 0)
         else Status = Late and then Item = Item'Old);
-   --  A reply has come to the call of that number.
+   --  A reply has come to the call with this number.
 
    procedure Tick (Item : in out Call; Status : out Wait_Status)
    with
@@ -95,7 +95,7 @@ is
        (if Left'Old > 0
         then Left = Left'Old - 1 and then (Status = Timed_Out) = (Left = 0)
         else Left = 0 and then Status = Within_Limit);
-   --  One more execution of those that were left has begun.
+   --  One of the executions that were left has begun.
 
    --  The provider
 
@@ -103,10 +103,10 @@ is
       Any  : Boolean     := False;
       Last : Call_Number := 0;
    end record;
-   --  Whether a call has come from a caller, and the number of the last.
+   --  Any: a call has come from the caller. Last: the number of the last one.
 
    type Hearing is (Heard_First, Repeated);
-   --  Repeated: the frame of a call has come before, and is left alone.
+   --  Repeated: the frame repeats the last call, which is not executed again.
 
    procedure Hear
      (Item   : in out Heard;
@@ -117,7 +117,7 @@ is
      Post   =>
        Item = (True, Number)
        and then (Status = Repeated) = (Item'Old = (True, Number));
-   --  A call of that number has come.
+   --  A call with this number has come.
 
    procedure Take_Turn
      (Left   : in out Execution_Count;
@@ -128,8 +128,8 @@ is
      Post   =>
        Is_Due = (Left'Old = 0)
        and then Left = (if Is_Due then Every - 1 else Left'Old - 1);
-   --  One more execution of what publishes has ended: is it one of those that
-   --  send, the first, and every so many behind it? Left are those before the
-   --  next one.
+   --  One more execution of the provider has ended. Is_Due: it sends the
+   --  value, as the first execution does and then every Every-th one. Left
+   --  counts the executions before the next one that sends.
 
 end Ravenchart.Calls;

@@ -5,8 +5,8 @@
 --  not be a whole number of nanoseconds.
 --
 --  Guarantees   both conversions round up, exactly: an instant is the first
---               tick at or after the length, so no release is early and none
---               is late by a tick or more, however far it is from the start
+--               tick at or after the length. So no release is early and none
+--               is late by a tick or more, at any distance from the start
 --  Tasking      none
 --  Timing       constant: one division by the rate or by a constant
 
@@ -21,7 +21,8 @@ is
    --  Nanoseconds in a second.
 
    type Product is range 0 .. 2**63 - 1;
-   --  Of a part of a second in one unit, and a second in the other one.
+   --  The product of a part of a second in one unit and the second in the
+   --  other one.
 
    subtype Minute_Count is Natural range 0 .. (2**62 - 1) / (60 * Per_Second);
    subtype Second_Count is Natural range 0 .. 59;
@@ -32,7 +33,7 @@ is
       Seconds : Second_Count := 0;
       Ticks   : Tick_Count   := 0;
    end record;
-   --  The sum of three parts, each of which fits the Integer by which
+   --  The sum of three parts. Each part fits the Integer by which
    --  Ada.Real_Time multiplies a span.
 
    function Rate return Product
@@ -51,7 +52,7 @@ is
    function Tick_Length return Positive_Nanoseconds
    is (Positive_Nanoseconds (Ceiling (Per_Second, Rate)))
    with Global => null;
-   --  Of one tick, rounded up.
+   --  The length of one tick, rounded up.
 
    function To_Ticks (Length : Nanoseconds) return Tick_Span
    is ((Minutes => Minute_Count (Length / Per_Second / 60),
@@ -85,7 +86,7 @@ is
      Post   =>
        To_Nanoseconds (To_Ticks (Length)) >= Length
        and then To_Nanoseconds (To_Ticks (Length)) - Length <= Tick_Length;
-   --  An instant is never early, and late by no more than a tick.
+   --  An instant is never early, and is late by at most a tick.
 
    procedure Lemma_Whole_Is_Exact (Length : Nanoseconds)
    with
@@ -93,7 +94,7 @@ is
      Global => null,
      Pre    => Is_Whole (Length),
      Post   => To_Nanoseconds (To_Ticks (Length)) = Length;
-   --  A whole number of ticks is kept as it is, both ways.
+   --  Both conversions keep a whole number of ticks exactly.
 
    procedure Lemma_Sum_Is_Whole (Left, Right : Nanoseconds)
    with
@@ -104,7 +105,7 @@ is
        and then Is_Whole (Right)
        and then Left <= Nanoseconds'Last - Right,
      Post   => Is_Whole (Left + Right);
-   --  Two whole numbers of ticks are one.
+   --  The sum of two whole numbers of ticks is one.
 
    procedure Lemma_No_Drift
      (Offset  : Nanoseconds;

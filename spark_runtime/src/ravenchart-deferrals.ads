@@ -1,11 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The events that a region has deferred, and which of them comes next.
+--  The events that a region has deferred, and the choice of the next one.
 --
---  An event that is kept is due when no active state defers it, and also from
---  the exit of a state that defers it: the exit frees it, though the state may
---  be entered again.
+--  A kept event is due while no active state defers it. The exit of a state
+--  that defers it makes it due as well, even if the state is entered again.
 --
 --  Guarantees   order of arrival, no heap, total operations
 --  Tasking      none of its own: the region's activity owns its store
@@ -20,15 +19,15 @@ generic
    type Event_Name is (<>);
    with function Name_Of (Item : Event) return Event_Name;
    Capacity : Positive;
-   --  The most events that are kept; what is deferred beyond that is lost.
+   --  The most events that are kept; a deferred event beyond them is lost.
    type Configuration is private;
    with function Is_Deferred
      (Name : Event_Name; Place : Configuration) return Boolean;
-   --  Does an active state defer it?
+   --  Does an active state defer the event?
    type Domain is (<>);
    with function Is_Freed
      (Name : Event_Name; D : Domain; Place : Configuration) return Boolean;
-   --  Is a state that defers it exited where a transition leaves D?
+   --  Does a transition that leaves D exit a state that defers the event?
 package Ravenchart.Deferrals
   with SPARK_Mode, Pure
 is
@@ -46,9 +45,8 @@ is
       Freed : Freed_Counts := (others => 0);
       Lost  : Boolean := False;
    end record;
-   --  The events, the oldest first. Those of a name among the first Freed of
-   --  that name were there when an exit freed them. Lost says that there was
-   --  no room for one.
+   --  The events, oldest first. For each name, an exit freed the first Freed
+   --  events of that name. Lost: an event found no room.
 
    function Is_Due
      (S : Store; Place : Configuration; Index : Lists.Length) return Boolean
@@ -57,7 +55,7 @@ is
    with
      Global => null,
      Pre    => Index in 1 .. Lists.Count (S.Kept);
-   --  Does no active state defer it, or was one exited that does?
+   --  Does no active state defer the event, or did an exit free it?
 
    function Due (S : Store; Place : Configuration) return Lists.Length
    with
@@ -68,7 +66,7 @@ is
        and then (for all I in 1 .. Lists.Count (S.Kept) =>
                    (if Due'Result = 0 or else I < Due'Result
                     then not Is_Due (S, Place, I)));
-   --  The place of the oldest event that is due; 0 when none is.
+   --  The position of the oldest event that is due; 0 when none is.
 
    function Is_Taken
      (Before : Store; Place : Configuration; Item : Event; After : Store)
@@ -86,7 +84,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Is Item the oldest event that was due, and only that taken out?
+   --  Is Item the oldest event that was due, and the only one removed?
 
    procedure Take_Due
      (S     : in out Store;
@@ -121,7 +119,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Is After what a transition that leaves D in Place makes of Before?
+   --  Is After the result for Before of a transition that leaves D in Place?
 
    procedure Change
      (S           : in out Store;
@@ -132,7 +130,7 @@ is
    with
      Global => null,
      Post   => Is_Changed (S'Old, S, Is_Deferral, Item, D, Place);
-   --  What a transition does: a deferral keeps Item, the exits in D free what
-   --  their states defer.
+   --  The effect of a transition: a deferral keeps Item, and the exits in D
+   --  free the events that their states defer.
 
 end Ravenchart.Deferrals;

@@ -1,17 +1,16 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What ends a controller for good: a task that has ended, and a processor
+--  The failures that end a controller: a task that has ended, and a processor
 --  that is silent.
 --
 --  Guarantees   the reason of each failure is kept, with the name of its task,
---               until Put_Reasons; a task that ends by itself or by an
---               exception is a failure without any call; an exception in the
+--               until Put_Reasons. A task that ends by itself or by an
+--               exception is a failure without any call. An exception in the
 --               environment task ends the program
---  Tasking      any task; nothing here blocks but what begins with Put, and
---               Give_Up
---  Timing       constant; these may wait for the host
---  Assumptions  ASM-014, the body does what is said here
+--  Tasking      any task; only Put_Error, Put_Reasons and Give_Up may block
+--  Timing       constant; those three may wait for the host
+--  Assumptions  ASM-014, the body does what this specification states
 
 package Ravenchart.Failures
   with
@@ -27,19 +26,19 @@ is
    with
      Global => (In_Out => State),
      Pre    => Name'Length in 1 .. Longest_Name;
-   --  The calling task has this name. One that never registers is reported
+   --  Give the calling task this name. A task that never registers is reported
    --  as a task without a name.
 
    procedure Note_Silence (Name : String)
    with
      Global => (In_Out => State),
      Pre    => Name'Length in 1 .. Longest_Name;
-   --  The processor with this name is silent. The first one that is loses its
-   --  urgency, where the target can take it away: the others then run.
+   --  The processor with this name is silent. The first silent one loses its
+   --  priority where the target can lower it: the others then run.
 
    function Stop_Needed return Boolean
    with Volatile_Function, Global => State;
-   --  Is there a failure? Then the controller shuts down.
+   --  Is there a failure? The controller then shuts down.
 
    procedure Put_Error (Text : String)
    with
@@ -53,10 +52,11 @@ is
 
    procedure Feed_Watchdog
    with Global => (In_Out => State);
-   --  All is well: the watchdog of the target may wait for its time again.
+   --  Feed the watchdog of the target: no processor is silent.
 
    procedure Give_Up
    with Global => (In_Out => State);
-   --  An orderly end has not come about: hand the reasons over and end here.
+   --  The orderly end has not come in time: hand the reasons over and end
+   --  here.
 
 end Ravenchart.Failures;

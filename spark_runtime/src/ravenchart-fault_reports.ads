@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What every fault of a node comes to: it is counted, and traced.
+--  Every fault of a node is counted and traced here.
 --
 --  Guarantees   no state of its own
 --  Tasking      any task that may call both actual procedures
@@ -15,7 +15,7 @@ generic
    with procedure Note
      (Kind : Traces.Trace_Kind; Element : Element_Id; Value : Integer)
    is null;
-   --  Not given where a node keeps no trace.
+   --  The trace; null where a node keeps none.
 package Ravenchart.Fault_Reports
   with SPARK_Mode
 is

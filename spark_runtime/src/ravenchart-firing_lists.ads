@@ -1,10 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The transitions that one step of a region has fired, in their order.
+--  The transitions that one step of a region has taken, in their order.
 --
---  Each is followed by the segments of its way: the transitions that go on
---  from a choice or a history.
+--  The segments of its path follow each transition: the transitions that
+--  continue from a choice or a history.
 --
 --  Guarantees   strict order, no heap
 --  Tasking      none of its own: the region's activity owns its lists
@@ -16,11 +16,11 @@ generic
    No_Selection : Selection;
    --  Fills the places that hold no transition.
    with function Is_Segment (T : Selection) return Boolean;
-   --  Does it go on from a choice or a history?
+   --  Does T continue from a choice or a history?
    Most_Segments : Natural;
    --  The most segments that follow one transition.
    Capacity : Positive;
-   --  The most that one step fires.
+   --  The most transitions that one step takes, with segments.
 package Ravenchart.Firing_Lists
   with SPARK_Mode, Pure
 is
@@ -32,14 +32,14 @@ is
       Count : Length := 0;
       Items : Selection_Array := (others => No_Selection);
    end record;
-   --  What was fired, the first Count items.
+   --  The transitions taken: the first Count items.
 
    Nothing : constant List := (Count => 0, Items => (others => No_Selection));
 
    function Has (Fired : List; T : Selection) return Boolean
    is (for some I in 1 .. Fired.Count => Fired.Items (I) = T)
    with Global => null;
-   --  Is T fired?
+   --  Is T taken?
 
    function Is_Added
      (Before : List; T : Selection; After : List) return Boolean
@@ -53,14 +53,14 @@ is
    with
      Ghost,
      Global => null;
-   --  Is T fired after Before, with the segments of its way, and no more?
+   --  Is T taken after Before, followed by its segments and nothing else?
 
    function Is_Only (Fired : List; T : Selection) return Boolean
    is (Is_Added (Nothing, T, Fired))
    with
      Ghost,
      Global => null;
-   --  Is T fired, with the segments of its way, and nothing else?
+   --  Is T taken, followed by its segments and nothing else?
 
    function Is_Ordered (Fired : List) return Boolean
    is (for all I in 1 .. Fired.Count =>
@@ -71,7 +71,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Is all but segments in the declared order?
+   --  Are all transitions but segments in the declared order?
 
    procedure Add (Fired : in out List; T : Selection)
    with
@@ -82,6 +82,6 @@ is
        and then Fired.Items (Fired.Count) = T
        and then (for all I in 1 .. Fired.Count - 1 =>
                    Fired.Items (I) = Fired.Items'Old (I));
-   --  Note that T is fired.
+   --  Note that T is taken.
 
 end Ravenchart.Firing_Lists;

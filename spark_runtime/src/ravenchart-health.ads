@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What can go wrong at run time, as typed faults that a chart can react to.
+--  The faults at run time, typed so that a chart can react to them.
 --
 --  Guarantees   no state
 --  Tasking      none
@@ -20,8 +20,8 @@ is
       Can_Bus_Off,
       Silence,
       Protection_Error);
-   --  The faults the runtime and the HAL can notice. The controller counts
-   --  those of CAN itself (Read_Faults), and a report has those counts.
+   --  The faults that the runtime and the HAL can detect. The controller
+   --  counts those of CAN itself (Read_Faults), and a report has those counts.
 
    type Fault_Counts is array (Fault_Kind) of Event_Count;
    --  How often each fault was recorded.

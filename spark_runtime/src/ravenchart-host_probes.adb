@@ -49,7 +49,8 @@ is
             Board.Write (Worst);
          end if;
          Release := Event_Count'Min (Next (Event_Count (Now / Period)), Last);
-         --  Wake-ups that a long stall has swallowed tell nothing new.
+         --  Skip the wake-ups that fell into a long stall: they measure
+         --  nothing new.
       end loop;
    end Probe;
 

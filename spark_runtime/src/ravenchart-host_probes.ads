@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  How long the host withholds the processor: one task above all others that
---  wakes once per Period and notes how late it is.
+--  Measures how long the host withholds the processor: one task above all
+--  others wakes once per Period and records its lateness.
 --
 --  On a workstation or a virtual machine the kernel and the hypervisor take
---  time that no model knows of. Nothing of the controller can delay this
---  task, so its lateness is the host's. It is what cyclictest measures.
+--  time that no model includes. Nothing of the controller can delay this task,
+--  so its lateness is the host's. cyclictest measures the same.
 --
 --  Guarantees   Read gives the largest lateness since the start
 --  Analysis     one task record: T = Period, P = Probe_Priority
@@ -16,7 +16,7 @@ with System;
 
 generic
    Name : String;
-   --  Of the task, where it is reported.
+   --  The name of the task in reports.
    Period : Positive_Nanoseconds;
    Probe_Priority : System.Priority;
    --  Above every other task of the program.
@@ -31,7 +31,7 @@ package Ravenchart.Host_Probes
 is
    Given_Period   : constant Positive_Nanoseconds := Period;
    Given_Priority : constant System.Priority := Probe_Priority;
-   --  The task as it runs, for a timing certificate to be compared with.
+   --  The task as it runs, for comparison with a timing certificate.
 
    procedure Read (Longest : out Nanoseconds)
    with Global => (Input => State);

@@ -1,14 +1,14 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What a target does for the report of a controller and for its end: the one
---  part of Hosts that each target has a body of.
+--  The services of a target for the report of a controller and for its end:
+--  the one part of Hosts that each target has a body of.
 --
 --  Guarantees   a report that cannot be written never disturbs the controller:
---               it is then cut short
+--               it then ends early
 --  Tasking      the environment task only
 --  Timing       not bounded: it may wait for a disk or a serial line
---  Assumptions  ASM-002, the body does what is said here
+--  Assumptions  ASM-002, the body does what this specification states
 
 private package Ravenchart.Hosts.Services
   with
@@ -21,11 +21,11 @@ private package Ravenchart.Hosts.Services
 is
    procedure Start
    with Global => (In_Out => State);
-   --  Be ready for requests to stop, and begin the report.
+   --  Accept requests to stop, and begin the report.
 
    function Stop_Requested return Boolean
    with Volatile_Function, Global => State;
-   --  Has the target been asked to end the controller?
+   --  Has the target received a request to end the controller?
 
    procedure Put (Text : String)
    with Global => (In_Out => State);
@@ -33,10 +33,11 @@ is
 
    procedure Flush
    with Global => (In_Out => State);
-   --  Write out all of the report.
+   --  Write the buffered part of the report out.
 
    procedure Finish (Success : Boolean)
    with Global => (In_Out => State);
-   --  End the program: status 0 on Success, else 1, where a target has such.
+   --  End the program with status 0 on Success, else 1, on targets that have a
+   --  status.
 
 end Ravenchart.Hosts.Services;

@@ -3,7 +3,7 @@
 
 --  Recorded values in the report of a controller: V time element value.
 --
---  Guarantees   as those of Hosts
+--  Guarantees   those of Hosts
 --  Tasking      the environment task only
 --  Timing       not bounded: it may wait for a disk or a serial line
 

@@ -16,7 +16,7 @@ is
       Length : Line_Length := 0;
       Text   : String (1 .. Line_Length'Last) := (others => ' ');
    end record;
-   --  Of the report. Every line here fits.
+   --  A line of the report; the longest one fits.
 
    procedure Append (To : in out Line; C : Character)
    with Global => null;

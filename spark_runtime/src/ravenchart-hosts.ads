@@ -1,25 +1,35 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What is around a controller: requests to stop, its report, and its end.
+--  The environment of a controller: requests to stop, its report, and its end.
 --
 --  Guarantees   a report that cannot be written never disturbs the controller:
---               it is then cut short
+--               it then ends early
 --  Tasking      the environment task only, at the lowest priority; gnatprove
 --               refuses a second task, since the state is not synchronous
 --  Timing       not bounded: it may wait for a disk or a serial line
---  Assumptions  ASM-002, what the target does for it
+--  Assumptions  ASM-002, the body of Hosts.Services
 --
---  On a Unix host the report goes to the file that the environment variable
---  RAVENCHART_TRACE names, and nowhere when it is not set; on a board to its
---  serial line. Lines: E clock, the time of the real-time clock of the machine
---  at Start of Epochs; M digest, of the model from which the program was
---  generated; T time kind element value; V time element value, of a value
---  that is recorded (Value_Lines); P processor releases misses
---  worst_response last_response; A activity worst_execution; Q region waiting
---  highest, of a queue of events; H kind count; L what count; W host_latency;
---  N now, the time at which the statistics were read; F feeds of the watchdog;
---  END last. Times are in nanoseconds. A board repeats its M line.
+--  On a Unix host the environment variable RAVENCHART_TRACE names the file of
+--  the report; without it there is none. A board writes the report to its
+--  serial line. Times are in nanoseconds. A board repeats its M line. END is
+--  the last line. The lines:
+--
+--     E clock           the real-time clock of the machine at Epochs.Start
+--     M digest          of the model from which the program was generated
+--     T time kind element value
+--     V time element value
+--                       a recorded value (Value_Lines)
+--     P processor releases misses worst_response last_response
+--     A activity worst_execution
+--     Q region waiting highest
+--                       an event queue
+--     H kind count      a kind of fault
+--     L what count      losses of one kind
+--     W host_latency
+--     N now             the time at which the statistics were read
+--     F feeds           of the watchdog
+--     END
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -38,12 +48,12 @@ package Ravenchart.Hosts
 is
    procedure Start
    with Global => (Input => Epochs.Start, In_Out => Process);
-   --  Be ready for requests to stop (SIGTERM and SIGINT on a Unix host), and
-   --  begin the report. A host warns when it gives no real-time priorities.
+   --  Accept requests to stop (SIGTERM and SIGINT on a Unix host), and begin
+   --  the report. A host without real-time priorities causes a warning.
 
    function Stop_Requested return Boolean
    with Volatile_Function, Global => (Process, Failures.State);
-   --  Has the target been asked to end the controller, or is there a failure?
+   --  Is there a request to end the controller, or a failure?
 
    procedure Put_Model (Digest : String)
    with
@@ -91,7 +101,7 @@ is
      Global =>
        (Input  => (Epochs.Start, Ada.Real_Time.Clock_Time),
         In_Out => Process);
-   --  Write an N line: what follows was read no earlier.
+   --  Write an N line: the lines that follow were read no earlier.
 
    procedure Put_Feeds (Count : Event_Count)
    with Global => (In_Out => Process);

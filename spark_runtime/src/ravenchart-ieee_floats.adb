@@ -23,8 +23,8 @@ is
    -- Raw_Of --
    ------------
 
-   --  SPARK has no conversion between bits and a floating-point number: it
-   --  is all that the four functions outside hold.
+   --  SPARK has no conversion between bits and a floating-point number: only
+   --  these four functions, outside of SPARK, convert.
 
    function Raw_Of (Value : Float) return Bits_32
    with SPARK_Mode => Off

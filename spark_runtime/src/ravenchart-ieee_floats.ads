@@ -2,15 +2,15 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Floating-point numbers of IEEE 754 as the raw bits that frames carry, for
---  the bodies of users: 32 bits are one number of the model, 64 bits are two,
+--  the bodies of users. 32 bits are one number of the model; 64 bits are two,
 --  the more significant half first.
 --
 --  Guarantees   raw bits are taken apart and joined without loss; an infinity
---               or no number at all never becomes a value, but a status
+--               or a NaN never becomes a value: it has a status of its own
 --  Tasking      none: any task may use these subprograms
 --  Timing       constant
---  Assumptions  ASM-021, the bodies of Raw_Of and Value_Of do what is said
---               here
+--  Assumptions  ASM-021, the bodies of Raw_Of and Value_Of do what this
+--               specification states
 
 package Ravenchart.IEEE_Floats
   with SPARK_Mode, Pure
@@ -21,7 +21,7 @@ is
    type Number_Class is (Zero, Subnormal, Normal, Infinite, Not_A_Number);
 
    type Conversion_Status is (Finite, Infinite, Not_A_Number);
-   --  What raw bits stand for: a value, or none.
+   --  The kind of value that raw bits represent.
 
    function Status_Of (Class : Number_Class) return Conversion_Status
    is (case Class is
@@ -33,7 +33,7 @@ is
    --  32 bits
 
    subtype Single_Exponent is Number range 0 .. 255;
-   --  Biased by 127; 255 for infinities and what is not a number.
+   --  Biased by 127; 255 for infinities and NaNs.
 
    subtype Single_Fraction is Number range 0 .. 2**23 - 1;
 
@@ -89,7 +89,7 @@ is
      Global => null,
      Pre    => Is_Finite (Raw),
      Post   => Raw_Of (Value_Of'Result) = Raw;
-   --  The value that finite raw bits stand for.
+   --  The value that finite raw bits represent.
 
    procedure To_Float
      (Raw : Bits_32; Value : out Float; Status : out Conversion_Status)
@@ -100,12 +100,12 @@ is
        and then (if Status = Finite
                  then Raw_Of (Value) = Raw
                  else Value = 0.0);
-   --  The value that received bits stand for; 0.0 where they stand for none.
+   --  The value that received bits represent; 0.0 unless they are finite.
 
    --  64 bits
 
    subtype Double_Exponent is Number range 0 .. 2_047;
-   --  Biased by 1023; 2047 for infinities and what is not a number.
+   --  Biased by 1023; 2047 for infinities and NaNs.
 
    subtype Double_Fraction is Number range 0 .. 2**52 - 1;
 
@@ -119,7 +119,8 @@ is
       High : Bits_32;
       Low  : Bits_32;
    end record;
-   --  High has the sign, the exponent, and the first 20 bits of the fraction.
+   --  High holds the sign, the exponent, and the first 20 bits of the
+   --  fraction.
 
    function Joined (Fields : Double_Fields) return Double_Bits
    is ((High =>
@@ -169,7 +170,7 @@ is
      Global => null,
      Pre    => Is_Finite (Raw),
      Post   => Raw_Of (Value_Of'Result) = Raw;
-   --  The value that finite raw bits stand for.
+   --  The value that finite raw bits represent.
 
    procedure To_Long_Float
      (Raw    : Double_Bits;
@@ -182,6 +183,6 @@ is
        and then (if Status = Finite
                  then Raw_Of (Value) = Raw
                  else Value = 0.0);
-   --  The value that received bits stand for; 0.0 where they stand for none.
+   --  The value that received bits represent; 0.0 unless they are finite.
 
 end Ravenchart.IEEE_Floats;

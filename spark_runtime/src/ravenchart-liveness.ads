@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  When a processor is silent: the judgement of its supervisor, as pure
---  functions of what the processor has completed and of the time.
+--  Decides whether a processor is silent: pure functions of its completed
+--  releases and of the time, for its supervisor.
 --
 --  Guarantees   a periodic processor is silent exactly when its oldest release
 --               that has not completed is overdue; a sporadic one exactly when
---               the release under way is; silence is found once
+--               the release under way is. Silence is reported once
 --  Tasking      none
 --  Timing       constant
 
@@ -27,9 +27,9 @@ is
       Under_Way : Boolean     := False;
       Due       : Nanoseconds := 0;
    end record;
-   --  How many releases have completed, in the order in which they were due.
+   --  The number of completed releases, in the order in which they were due.
    --  Under_Way: a release that was due at Due has begun and not completed;
-   --  only sporadic processors say so.
+   --  only sporadic processors set it.
 
    function Is_Overdue
      (Beat : Rhythm; Release : Event_Count; Elapsed : Nanoseconds)
@@ -38,16 +38,16 @@ is
        and then Nanoseconds (Release) * Beat.Period
                 <= Elapsed - Beat.Offset - Beat.Limit)
    with Global => null;
-   --  At Elapsed from the start, should that release have completed? The
-   --  first condition follows from the second one, and keeps it in range.
+   --  Should that release have completed at Elapsed from the start? The first
+   --  condition follows from the second one, and keeps it in range.
 
    function Is_Silent
      (Beat : Rhythm; Seen : Progress; Elapsed : Nanoseconds) return Boolean
    is (Is_Overdue (Beat, Seen.Completed, Elapsed))
    with Global => null;
-   --  Is a periodic processor silent? Releases complete in order, so number
-   --  Completed is the oldest one that has not: where it is not overdue, none
-   --  is.
+   --  Is a periodic processor silent? Releases complete in order, so release
+   --  number Completed is the oldest one that has not: where it is not
+   --  overdue, none is.
 
    function Is_Stuck
      (Limit   : Positive_Nanoseconds;
@@ -65,8 +65,8 @@ is
      Global => null,
      Pre    => First <= Later and then not Is_Overdue (Beat, First, Elapsed),
      Post   => not Is_Overdue (Beat, Later, Elapsed);
-   --  No release is overdue where the oldest one is not: no silence escapes
-   --  Is_Silent.
+   --  No release is overdue where the oldest one is not, so Is_Silent misses
+   --  no silence.
 
    procedure Lemma_Stays_Overdue
      (Beat : Rhythm; Release : Event_Count; Before, After : Nanoseconds)
@@ -75,11 +75,11 @@ is
      Global => null,
      Pre    => Before <= After and then Is_Overdue (Beat, Release, Before),
      Post   => Is_Overdue (Beat, Release, After);
-   --  What is overdue stays so until it completes: the next look of a
+   --  An overdue release stays overdue until it completes: the next look of a
    --  supervisor finds it.
 
    type Finding is (In_Time, Falls_Silent, Was_Silent);
-   --  What one look at a processor has found.
+   --  The result of one look at a processor.
 
    procedure Note
      (Reported : in out Boolean; Is_Silent : Boolean; Found : out Finding)

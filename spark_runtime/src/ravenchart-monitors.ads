@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What was observed of one processor: releases, misses, the last response and
+--  The statistics of one processor: releases, misses, the last response and
 --  worst times.
 --
 --  Guarantees   contract of Note: worst values only grow; one Read sees one
@@ -59,8 +59,9 @@ is
 
    procedure Record_Begin (Due : Nanoseconds)
    with Global => (In_Out => State);
-   --  A release that was due at Due from the start has begun: for sporadic
-   --  processors, whose releases nobody knows before.
+   --  Note that a release has begun that was due at Due from the start.
+   --  Sporadic processors call it, since their releases are not known in
+   --  advance.
 
    procedure Record_Release
      (Response : Nanoseconds; Missed : Boolean; Times : Execution_Times)
@@ -69,10 +70,10 @@ is
 
    procedure Read (S : out Statistics)
    with Global => (Input => State);
-   --  Copy what was observed so far.
+   --  Copy the statistics up to now.
 
    procedure Read_Progress (Seen : out Liveness.Progress)
    with Global => (Input => State);
-   --  Copy how far the processor has come; in constant time.
+   --  Copy the progress of the processor, in constant time.
 
 end Ravenchart.Monitors;

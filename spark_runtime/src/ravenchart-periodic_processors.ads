@@ -21,11 +21,12 @@ with Ravenchart.Schedules;
 
 generic
    Name : String;
-   --  Of the task, where it is reported.
+   --  The name of the task in reports.
    type Activity_Id is (<>);
    type Table_Type is array (Activity_Id) of Schedules.Slot;
    Table : Table_Type;
-   --  When each activity runs; they run in the order of Activity_Id.
+   --  The releases in which each activity runs; they run in the order of
+   --  Activity_Id.
    Cycle : Positive;
    --  Releases after which the table repeats: a multiple of each divisor.
    Period : Positive_Nanoseconds;
@@ -44,7 +45,7 @@ generic
       Reason => "it is null where nobody wants to know");
    with procedure On_Executed
      (Activity : Activity_Id; Used : Nanoseconds) is null;
-   --  Called after each activity, with the processor time that it used.
+   --  Called after each activity, with its processor time.
 package Ravenchart.Periodic_Processors
   with SPARK_Mode, Elaborate_Body
 is
@@ -56,7 +57,7 @@ is
    Given_Offset   : constant Nanoseconds := Offset;
    Given_Deadline : constant Positive_Nanoseconds := Deadline;
    Given_Priority : constant System.Priority := Task_Priority;
-   --  The task as it runs, for a timing certificate to be compared with.
+   --  The task as it runs, for comparison with a timing certificate.
 
    package Releases is new Measured_Releases
      (Activity_Id      => Activity_Id,
@@ -72,11 +73,11 @@ is
    --  Releases, Misses, Last_Response, Worst_Response and Worst_Execution.
 
    procedure Observe (S : out Statistics) renames Releases.Observe;
-   --  What was observed so far.
+   --  Copy the statistics up to now.
 
    procedure Observe_Progress (Seen : out Liveness.Progress)
    renames Releases.Observe_Progress;
-   --  How far the processor has come.
+   --  Copy the progress of the processor.
 
 private
 

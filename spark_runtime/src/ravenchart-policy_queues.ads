@@ -16,15 +16,15 @@ with Ravenchart.Rings;
 generic
    type Element_Type is private;
    Null_Element : Element_Type;
-   --  Fills the places that hold no element; what Take hands over when there
-   --  is nothing to take.
+   --  Fills the places that hold no element; Take returns it when there is no
+   --  element.
 package Ravenchart.Policy_Queues
   with SPARK_Mode, Pure
 is
    pragma Assertion_Policy
      (Ghost => Ignore, Post => Ignore, Contract_Cases => Ignore);
-   --  Proved, never executed: to check a Post means to copy the queue, which
-   --  is too much for the stack of a task.
+   --  Proved, never executed: the check of a Post copies the queue, which is
+   --  too large for the stack of a task.
 
    use type Queueing.Overflow_Policy;
    use type Queueing.Put_Status;
@@ -148,6 +148,6 @@ private
       Store  : Element_Array (1 .. Capacity) := (others => Null_Element);
       Places : Rings.Ring (Capacity);
    end record;
-   --  Places says where in Store the elements are.
+   --  Places holds the indices in Store of the elements.
 
 end Ravenchart.Policy_Queues;

@@ -26,7 +26,7 @@ is
    --  Age counts executions of the handler since the last arrival.
 
    type Change is (Nothing, Arrival, Became_Stale);
-   --  What one execution of the handler did, for the events it raises.
+   --  The outcome of one execution of the handler, for the events it raises.
 
    procedure Handle
      (P       : in out Port;
@@ -55,7 +55,7 @@ is
              else P.Age'Old + 1)
           and then P.State =
             (if P.Age > Limit then Stale else P.State'Old));
-   --  One execution: take Item when it Arrived, else let the value age. A
-   --  port that never received anything stays so, however long it waits.
+   --  One execution: take Item when it Arrived, else let the value age. A port
+   --  that never received a value stays Never_Received, however long it waits.
 
 end Ravenchart.Port_Regions;

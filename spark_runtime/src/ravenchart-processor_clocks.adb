@@ -18,7 +18,7 @@ is
       Now    : Ada.Execution_Time.CPU_Time := Zero;
    begin
       if Caller /= Ada.Task_Identification.Null_Task_Id then
-         --  Always so; the library's contract asks for the test.
+         --  Always true; the contract of the library requires the test.
          Now := Ada.Execution_Time.Clock (Caller);
       end if;
       Used := Epochs.To_Nanoseconds (Now - Zero);

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Words that all queues share, whatever they hold.
+--  Types that all queues share.
 --
 --  Guarantees   no state
 --  Tasking      none
@@ -24,12 +24,12 @@ is
    --  How many elements wait, and the most that ever waited.
 
    type Overflow_Policy is (Reject_Newest, Drop_Oldest);
-   --  What a full queue gives up when one more element comes.
+   --  The element that a full queue gives up when one more element comes.
 
    type Put_Status is (Queued, Rejected_Full, Dropped_Oldest);
-   --  Dropped_Oldest says that the element was queued in another's place.
+   --  Dropped_Oldest: the element was queued in place of the oldest one.
 
    type Take_Status is (Taken, Empty);
-   --  Whether there was an element to take.
+   --  Was there an element to take?
 
 end Ravenchart.Queueing;

@@ -4,8 +4,8 @@
 --  Bounded queue between tasks: a mailbox of a queued port, an event queue of
 --  a region.
 --
---  Guarantees   strict order; what does not fit is given up by Policy and
---               counted; every operation is total
+--  Guarantees   strict order; an element that does not fit is given up by
+--               Policy and counted; every operation is total
 --  Tasking      any number of callers up to Ceiling
 --  Timing       constant, none suspends
 --  Analysis     one shared object, ceiling Ceiling
@@ -16,12 +16,12 @@ with Ravenchart.Queueing;
 generic
    type Element_Type is private;
    Null_Element : Element_Type;
-   --  What Take hands over when there is nothing to take.
+   --  The element that Take returns when Empty.
    Capacity : Queueing.Capacity_Type;
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
    Policy : Queueing.Overflow_Policy;
-   --  For elements that are put without another.
+   --  The policy of a Put that names no other one.
 package Ravenchart.Queues
   with
     SPARK_Mode,

@@ -20,6 +20,6 @@ is
    --  type, or the position of a literal; it holds each value of a model.
 
    Null_Record : constant Value_Record := (others => <>);
-   --  Stands where there is no record.
+   --  Fills a place without a record.
 
 end Ravenchart.Recorded_Values;

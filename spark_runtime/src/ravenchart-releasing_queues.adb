@@ -26,7 +26,7 @@ is
       Policy       => Policy);
 
    Filled : Suspension_Object;
-   --  True when an element may have come since the caller of Wait looked.
+   --  True when an element may have come since the caller of Wait last looked.
 
    procedure Put
      (Item      : Element_Type;

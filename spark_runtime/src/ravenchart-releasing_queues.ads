@@ -4,17 +4,17 @@
 --  Bounded queue whose elements release a sporadic processor: the mailbox of a
 --  queued port that releases one.
 --
---  Guarantees   strict order; what does not fit is given up by Policy and
---               counted; an element put is never left while the caller of
---               Wait suspends
+--  Guarantees   strict order; an element that does not fit is given up by
+--               Policy and counted; an element put is never left while the
+--               caller of Wait suspends
 --  Tasking      any number of callers up to Ceiling; one caller of Wait, which
 --               alone calls Take
 --  Timing       constant; only Wait suspends
 --  Analysis     one shared object, ceiling Ceiling
 --
---  Wait leaves the element where it is: until the processor handles it, it
---  takes one of the places. The wake-up is a suspension object for the reason
---  given in Ravenchart.Waiting_Queues.
+--  Wait leaves the element in the queue: until the processor handles the
+--  element, it takes one of the places. The wake-up is a suspension object for
+--  the reason given in Ravenchart.Waiting_Queues.
 
 with System;
 with Ravenchart.Queueing;
@@ -22,12 +22,12 @@ with Ravenchart.Queueing;
 generic
    type Element_Type is private;
    Null_Element : Element_Type;
-   --  What Take hands over when there is nothing to take.
+   --  The element that Take returns when Empty.
    Capacity : Queueing.Capacity_Type;
    Ceiling : System.Any_Priority;
    --  At least the priority of every caller.
    Policy : Queueing.Overflow_Policy;
-   --  For elements that are put without another.
+   --  The policy of a Put that names no other one.
 package Ravenchart.Releasing_Queues
   with
     SPARK_Mode,

@@ -33,7 +33,7 @@ is
    procedure Finish
      (Number : Calls.Call_Number; Status : out Calls.Reply_Status)
    with Global => (In_Out => State);
-   --  A reply has come to the call of that number.
+   --  A reply has come to the call with this number.
 
    procedure Tick (Status : out Calls.Wait_Status)
    with Global => (In_Out => State);

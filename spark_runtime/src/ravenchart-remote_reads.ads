@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What an instance on another node publishes, as its readers see it: the
---  value that came last, while one comes in every Limit executions of the
---  reader that looks after it.
+--  A value that an instance on another node publishes, as its readers see it:
+--  the last value received. A value has to come within every Limit executions
+--  of the reader that supervises it.
 --
 --  Guarantees   those of Calls; readers get a copy of one whole value
 --  Tasking      any task up to Ceiling
@@ -16,7 +16,7 @@ with Ravenchart.Calls;
 generic
    type Element_Type is private;
    Initial : Element_Type;
-   --  What readers see before the first value has come.
+   --  The value before the first one has come.
    Limit : Calls.Execution_Limit;
    --  Executions of the reader after which the value is too old.
    Ceiling : System.Any_Priority;
@@ -34,11 +34,11 @@ is
 
    procedure Tick (Status : out Calls.Wait_Status)
    with Global => (In_Out => State);
-   --  One more execution of the reader has begun; told once until the next
-   --  value: Timed_Out, the value is too old.
+   --  One more execution of the reader has begun. Timed_Out: the value is too
+   --  old; reported once until the next value.
 
    procedure Read (Item : out Element_Type)
    with Global => (Input => State);
-   --  Copy the value out, however old.
+   --  Copy the value out, of any age.
 
 end Ravenchart.Remote_Reads;

@@ -4,8 +4,8 @@
 --  Sums of the response-time analysis, as timing certificates state them:
 --  static functions, which the compiler evaluates.
 --
---  Guarantees   nothing overflows: what is too much for Time is Time'Last,
---               and so more than any Window holds
+--  Guarantees   nothing overflows: a sum beyond Time is Time'Last, and so
+--               longer than any Window
 --  Tasking      none
 --  Timing       none at run time
 --  Analysis     releases in a window: Joseph and Pandya 1986, with release
@@ -45,12 +45,12 @@ is
      (W, J : Window; T : Separation; C : Window) return Time
    is (Product (Releases (W, J, T), C))
    with Static;
-   --  What these releases execute, each C.
+   --  The time that these releases execute, each C.
 
    function Demand
      (W, J : Window; T : Separation; C : Window; More : Time) return Time
    is (Sum (Demand (W, J, T, C), More))
    with Static;
-   --  The same, and More.
+   --  The same, plus More.
 
 end Ravenchart.Response_Times;

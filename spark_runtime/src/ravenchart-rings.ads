@@ -1,9 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The places of a queue, without its elements: where the next element goes,
---  where the oldest one is, and what a full queue gives up. Proved once here,
---  so that each instance of a queue has little left to prove.
+--  The places of a queue, without its elements: the place for the next
+--  element, that of the oldest one, and the one that a full queue gives up.
+--  Proved once here, so that each instance of a queue has little left to
+--  prove.
 --
 --  Guarantees   the places in use are distinct and keep the order of arrival;
 --               each loss is counted once; every operation is total
@@ -91,8 +92,8 @@ is
           and then Length (R) = R.Capacity
           and then (for all I in 1 .. R.Capacity =>
                       Place (R, I) = Place (R'Old, I)));
-   --  Take the place behind the newest one into use, where that is no loss or
-   --  the loss of the oldest element; otherwise Newest means nothing.
+   --  Take the place behind the newest one into use, where that loses no
+   --  element or the oldest one; otherwise Newest has no meaning.
 
    procedure Take
      (R      : in out Ring;
@@ -113,7 +114,7 @@ is
                       Place (R, I) = Place (R'Old, I + 1)),
         Length (R) = 0 =>
           Status = Queueing.Empty and then Length (R) = 0);
-   --  Give the oldest place in use back; when Empty, Oldest means nothing.
+   --  Give the oldest place in use back; when Empty, Oldest has no meaning.
 
 private
 

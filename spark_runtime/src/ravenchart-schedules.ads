@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The table of a processor: when each release is due, and which activity runs
---  in it.
+--  The table of a processor: the instant at which each release is due, and the
+--  activities that run in it.
 --
 --  Guarantees   no state
 --  Tasking      none
@@ -43,6 +43,7 @@ is
    with
      Global => null,
      Pre    => Release <= Last_Release (Offset, Period);
-   --  When it is due, from Epochs.Start: no release depends on the one before.
+   --  The instant at which the release is due, from Epochs.Start: no release
+   --  depends on the one before.
 
 end Ravenchart.Schedules;

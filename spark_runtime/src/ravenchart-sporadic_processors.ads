@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Sporadic command processor: one task that runs its activities once for
---  each release it is given.
+--  Sporadic command processor: one task that runs its activities once for each
+--  release that Wait returns.
 --
 --  Guarantees   two releases are never due closer than Minimum_Separation; a
 --               release that comes earlier is due when the separation is over
@@ -20,7 +20,7 @@ with Ravenchart.Schedules;
 
 generic
    Name : String;
-   --  Of the task, where it is reported.
+   --  The name of the task in reports.
    type Activity_Id is (<>);
    Minimum_Separation : Positive_Nanoseconds;
    Deadline : Positive_Nanoseconds;
@@ -39,7 +39,7 @@ generic
       Reason => "it is null where nobody wants to know");
    with procedure On_Executed
      (Activity : Activity_Id; Used : Nanoseconds) is null;
-   --  Called after each activity, with the processor time that it used.
+   --  Called after each activity, with its processor time.
 package Ravenchart.Sporadic_Processors
   with SPARK_Mode, Elaborate_Body
 is
@@ -48,10 +48,10 @@ is
    Given_Separation : constant Positive_Nanoseconds := Minimum_Separation;
    Given_Deadline   : constant Positive_Nanoseconds := Deadline;
    Given_Priority   : constant System.Priority := Task_Priority;
-   --  The task as it runs, for a timing certificate to be compared with.
+   --  The task as it runs, for comparison with a timing certificate.
 
    type Table_Type is array (Activity_Id) of Schedules.Slot;
-   --  Has the form that a release needs.
+   --  A table of the form that a release needs.
 
    Table : constant Table_Type := (others => (Divisor => 1, Phase => 0));
    --  Every activity runs in every release.
@@ -70,11 +70,11 @@ is
    --  Releases, Misses, Last_Response, Worst_Response and Worst_Execution.
 
    procedure Observe (S : out Statistics) renames Releases.Observe;
-   --  What was observed so far.
+   --  Copy the statistics up to now.
 
    procedure Observe_Progress (Seen : out Liveness.Progress)
    renames Releases.Observe_Progress;
-   --  How far the processor has come.
+   --  Copy the progress of the processor.
 
 private
 

@@ -44,7 +44,8 @@ is
       Fed      : Event_Count := 0;
       Alarm    : Boolean     := False;
       First    : Nanoseconds := 0;
-      --  When the first silence was found, if there is an Alarm.
+      --  The instant at which the first silence was found, if there is an
+      --  Alarm.
    begin
       Failures.Register (Name);
       loop

@@ -26,7 +26,7 @@ is
    --  All time-outs of a region, in model order.
 
    Stopped : constant Timer := (Armed => False, Remaining => 0, Period => 0);
-   --  Of a state that is not active, or taken.
+   --  The timer of a state that is not active, or whose expiry was taken.
 
    function Started
      (Executions : Execution_Count; Period : Execution_Count := 0) return Timer
@@ -34,7 +34,7 @@ is
        Remaining => Remaining_Count (Executions),
        Period    => Period)
    with Global => null;
-   --  Expires after so many ticks, and then once in each Period.
+   --  Expires after so many executions, and then once in each Period.
 
    function Moved
      (T               : Timer;
@@ -49,9 +49,9 @@ is
        then Stopped
        else T)
    with Global => null;
-   --  T of a state after a transition: the state was active Before, it is
-   --  active After, and where the transition Spanned it, it was left and
-   --  entered; then T starts again as Fresh.
+   --  T of a state after a transition. The state was active Before and is
+   --  active After. Where the transition Spanned it, the state was exited and
+   --  entered; T then starts again as Fresh.
 
    function Is_Due (T : Timer) return Boolean
    is (T.Armed and then T.Remaining <= 0)
@@ -101,7 +101,7 @@ is
      Global => null,
      Pre    =>
        Before'First = After'First and then Before'Last = After'Last;
-   --  Is Due the one that expired earliest, and the only one changed?
+   --  Is Due the timer that expired earliest, and the only one changed?
 
    procedure Arm
      (T          : out Timer;
@@ -110,7 +110,7 @@ is
    with
      Global => null,
      Post   => T = Started (Executions, Period);
-   --  Let T expire after so many ticks, and then once in each Period.
+   --  Let T expire after so many executions, and then once in each Period.
 
    procedure Disarm (T : out Timer)
    with
@@ -133,6 +133,7 @@ is
        and then (if Due = 0
                  then Timers = Timers'Old
                  else Is_Taken (Timers'Old, Timers, Due));
-   --  Take the timer that expired earliest and say which; 0 when none is due.
+   --  Take the timer that expired earliest: Due is its index, or 0 when none
+   --  is due.
 
 end Ravenchart.Timers;

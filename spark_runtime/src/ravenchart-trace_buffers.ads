@@ -3,8 +3,8 @@
 
 --  The trace of one node, kept until the environment task writes it out.
 --
---  Guarantees   records in the order in which they entered the lock; what
---               does not fit is rejected and counted
+--  Guarantees   records in the order in which they entered the lock; a record
+--               that does not fit is rejected and counted
 --  Tasking      any task up to Ceiling
 --  Timing       constant; the clock is read before the lock
 --  Analysis     one shared object, ceiling Ceiling

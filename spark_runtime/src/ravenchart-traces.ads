@@ -13,7 +13,7 @@ is
 
    type Trace_Kind is
      (Sent, Arrived, Handled, Raised, Activity, Transition, State, Fault);
-   --  What happened to the element.
+   --  The kind of occurrence at the element.
 
    type Trace_Record is record
       At_Time : Nanoseconds := 0;
@@ -24,6 +24,6 @@ is
    --  At_Time counts from Epochs.Start; Value is a detail of this Kind.
 
    Null_Record : constant Trace_Record := (others => <>);
-   --  Stands where there is no record.
+   --  Fills a place without a record.
 
 end Ravenchart.Traces;

@@ -2,11 +2,11 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  The recorded values of one node, kept until the environment task writes
---  them out. They are beside its trace: no value takes the place of a record
---  there.
+--  them out. They are apart from its trace: no value takes the place of a
+--  record there.
 --
---  Guarantees   values in the order in which they entered the lock; what does
---               not fit is rejected and counted
+--  Guarantees   values in the order in which they entered the lock; a value
+--               that does not fit is rejected and counted
 --  Tasking      any task up to Ceiling
 --  Timing       constant; the clock is read before the lock
 --  Analysis     one shared object, ceiling Ceiling

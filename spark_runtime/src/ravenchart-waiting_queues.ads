@@ -3,16 +3,17 @@
 
 --  Bounded queue that one task waits on: the way into and out of a driver.
 --
---  Guarantees   strict order; what does not fit is rejected and counted; an
---               element put is never left while the caller of Wait suspends
+--  Guarantees   strict order; an element that does not fit is rejected and
+--               counted; an element put is never left while the caller of Wait
+--               suspends
 --  Tasking      any number of callers up to Ceiling; one caller of Wait
 --  Timing       constant; only Wait suspends
 --  Analysis     one shared object, ceiling Ceiling
 --
---  The wake-up is a suspension object, not an entry: in the run-time library
---  of GNAT for Linux (12 and earlier) the caller of a single entry looks once
---  without a lock whether its call is done, then sleeps for ever if the call
---  was done in between.
+--  The wake-up is a suspension object, not an entry. In the run-time library
+--  of GNAT for Linux (12 and earlier) the caller of a single entry tests once,
+--  without a lock, whether its call is complete. If the call completes between
+--  this test and the wait, the caller sleeps for ever.
 
 with System;
 with Ravenchart.Queueing;

@@ -22,7 +22,7 @@ is
    --  An integer of the model that has no unit; the sum of two fits 64 bits.
 
    type Element_Id is range 0 .. 2**31 - 1;
-   --  A model element; trace.json says which one and where it is declared.
+   --  A model element; trace.json gives its name and its location.
 
    type Execution_Count is range 0 .. 2**31 - 1;
    --  Executions of one activity, the unit of region time.
@@ -41,6 +41,6 @@ is
    --  Both together, and no more than the last value.
 
    type Freshness is (Never_Received, Fresh, Stale);
-   --  What an input port knows about the value it holds.
+   --  The state of an input port: has its value come, and is it still fresh?
 
 end Ravenchart;

@@ -11,10 +11,10 @@ package body Ravenchart.Boards
 is
    use type Interfaces.Unsigned_64;
 
-   --  What an emulator loads beside the image: a run that ends
+   --  Words that an emulator loads beside the image, for a run that ends
 
    Loaded : constant Interfaces.Unsigned_64 := 16#4E55_5254_5241_4843#;
-   --  "CHARTRUN": there is a run time. No image reaches this far.
+   --  "CHARTRUN": the run time is set. No image reaches this address.
 
    Mark : Interfaces.Unsigned_64
    with
@@ -27,7 +27,7 @@ is
      Import,
      Volatile,
      Address => System'To_Address (16#7000_0008#);
-   --  In nanoseconds.
+   --  The run time in nanoseconds.
 
    --  The watchdog of the low-power domain, WDT of UG1085
 
@@ -106,7 +106,7 @@ is
       loop
          null;
       end loop;
-      --  The watchdog, which nobody feeds now, resets the board.
+      --  The watchdog, which is no longer fed, resets the board.
    end Finish;
 
 end Ravenchart.Boards;

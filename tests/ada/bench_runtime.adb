@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the runtime's operations cost: each beside the same work without the
---  protected object, in one run. Prints nanoseconds per operation, the median
---  of several rounds. The locking policy is that of the Ravenscar profile
---  (Ceiling_Locking): as root each protected call changes the task's priority
---  twice through the kernel, as an ordinary user it does not.
+--  Execution times of the runtime's operations: each beside the same work
+--  without the protected object, in one run. Prints nanoseconds per operation,
+--  the median of several rounds. The locking policy is that of the Ravenscar
+--  profile (Ceiling_Locking): as root each protected call changes the task's
+--  priority twice through the kernel, as an ordinary user it does not.
 
 with GNAT.OS_Lib;
 with System;

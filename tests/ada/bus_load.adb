@@ -43,7 +43,8 @@ procedure Bus_Load is
       Queued : Nanoseconds := 0;
       Worst  : Nanoseconds := 0;
    end record;
-   --  Count: its releases so far. Queued: when the next one is queued.
+   --  Count: its releases so far. Queued: the time at which the next one is
+   --  queued.
 
    Messages : array (1 .. Most) of Message;
    Last     : Natural := 0;
@@ -54,19 +55,19 @@ procedure Bus_Load is
    Passive  : Boolean := False;
 
    function Next_Number return Nanoseconds;
-   --  From standard input.
+   --  The next number of standard input.
 
    procedure Read;
-   --  The messages.
+   --  Read the messages.
 
    procedure Prepare (M : in out Message);
-   --  Decide when its next release is queued.
+   --  Set the time at which its next release is queued.
 
    procedure Release (I : Positive);
-   --  Message I is queued.
+   --  Queue a release of message I.
 
    procedure Carry (M : Networks.Moment);
-   --  What begins then.
+   --  Carry out what begins on the bus then.
 
    -----------------
    -- Next_Number --

@@ -1,12 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A node of a bus, as a process: it does what package Echoes says, under
---  the number on its command line, and prints how it stands whenever that
---  has changed. It ends when nobody reads that any more. It takes CAN FD
---  frames unless CAN_ECHO_CLASSIC is set. With CAN_ECHO_ON_REQUEST it is
---  bus-off for as many milliseconds before it requests recovery; with 0 for
---  ever.
+--  A node of a bus, as a process: it runs package Echoes under the number on
+--  its command line, and prints its state after each change. It ends when its
+--  output has no reader any more. It takes CAN FD frames unless
+--  CAN_ECHO_CLASSIC is set. CAN_ECHO_ON_REQUEST is the time in bus-off, in
+--  milliseconds, before it requests recovery; with 0 it requests none.
 
 with Ada.Command_Line;
 with Ada.Environment_Variables;

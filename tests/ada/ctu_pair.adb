@@ -16,7 +16,7 @@ package body Ctu_Pair is
       with procedure Write
         (To : Registers.Register; Value : Registers.Word);
    procedure Start (Good : out Boolean);
-   --  Of either core.
+   --  Start the core.
 
    -----------
    -- Start --

@@ -14,13 +14,13 @@ package Ctu_Pair is
    package Far is new Ravenchart.Can.Ctu_Cores (Behind => 1);
 
    procedure Start_Near (Good : out Boolean);
-   --  Is it a core with its buffers? Let it join the bus, for FD frames.
+   --  Good: it is a core with its buffers. Let it join the bus, for FD frames.
 
    procedure Start_Far (Good : out Boolean);
    --  The same for the other one.
 
    procedure Come
      (I : out Ravenchart.Can.Ctu_Frames.Image; Good : out Boolean);
-   --  The next frame at the far core, waited for not longer than a second.
+   --  The next frame at the far core, after a wait of at most a second.
 
 end Ctu_Pair;

@@ -10,8 +10,8 @@ package body Facts is
 
    procedure C_Exit (Status : Interfaces.C.int)
    with Import, Convention => C, External_Name => "_exit";
-   --  Ends the process without finalization: tasks still run, and waiting
-   --  for what they hold could take for ever.
+   --  Ends the process without finalization: tasks still run, and a wait for
+   --  their objects could take for ever.
 
    procedure Check (Fact : String; Holds : Boolean) is
    begin

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What every test says: one line for each fact, and the exit status.
+--  The output of every test: one line for each fact, and the exit status.
 
 package Facts is
 

@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Conversions of floating-point numbers, line by line. Read: RAW of 32 bits,
---  or HIGH LOW of 64. Shown: STATUS, CLASS, SIGN, EXPONENT and FRACTION of the
---  fields; then, where there is a value, MANTISSA and SCALE, with value =
---  MANTISSA * 2 ** SCALE, and the raw bits of a value that is made of these
---  two by calculation.
+--  Conversions of floating-point numbers, line by line. Input: RAW of 32 bits,
+--  or HIGH LOW of 64. Output: STATUS, CLASS, SIGN, EXPONENT and FRACTION of
+--  the fields. If there is a value, MANTISSA and SCALE follow, with value =
+--  MANTISSA * 2 ** SCALE, and then the raw bits of the value that is computed
+--  from these two.
 
 with Ada.Text_IO;
 with Ravenchart;

@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Both ends of ISO-TP on a line: the interoperation test gives it frames and
---  time, and it answers with frames and values.
+--  the progress of time, and it answers with frames and values.
 --
 --  iso_tp_line LENGTH BLOCK, then a command a line:
 --    G HEX   give the sender a value

@@ -15,7 +15,7 @@ package body Measuring is
    generic
       with procedure Operation (Value : Integer);
    function Round_Time return Duration;
-   --  One round, per 1_000_000_000 operations.
+   --  The duration of one round, per 1_000_000_000 operations.
 
    function Round_Time return Duration is
       Start : constant Ada.Real_Time.Time := Ada.Real_Time.Clock;

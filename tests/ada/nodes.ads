@@ -14,7 +14,7 @@ package Nodes is
    function Accepts
      (Id : Ravenchart.Can.Identifier; Format : Ravenchart.Can.Frame_Format)
       return Boolean;
-   --  All but the extended identifiers below 16#100#.
+   --  Accepts all but the extended identifiers below 16#100#.
 
    package Node is new Ravenchart.Can.Controllers
      (Transmit_Ceiling => System.Default_Priority + 8,
@@ -40,6 +40,6 @@ package Nodes is
 
    procedure Wait_Frame
      (F : out Ravenchart.Can.Frame; Stamp : out Ravenchart.Nanoseconds);
-   --  Wait for a frame, which is a classic one; Null_Frame where it is not.
+   --  Wait for a classic frame; Null_Frame where it is none.
 
 end Nodes;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The shared objects under test: the profile wants them at library level.
+--  The shared objects under test: the profile requires them at library level.
 
 with System;
 with Ravenchart.Answered_Offers;
@@ -64,7 +64,7 @@ package Objects is
      (Ceiling => Ceiling);
 
    Call_Limit : constant := 3;
-   --  Executions that a call of another node waits.
+   --  Executions for which a call of another node waits.
 
    package Calling is new Ravenchart.Remote_Calls
      (Limit   => Call_Limit,
@@ -99,7 +99,7 @@ package Objects is
       Report       => Faults.Report);
 
    procedure Answer;
-   --  Offers 99 to the queue that drops.
+   --  Offers 99 to the queue with policy Drop_Oldest.
 
    package Answered is new Ravenchart.Answered_Offers
      (Offers  => Rejecting_Offers,

@@ -15,6 +15,6 @@ package Random_Numbers is
    function Random (First, Last : Natural) return Natural
    is (First
        + Natural (Random mod Interfaces.Unsigned_64 (Last - First + 1)));
-   --  From First to Last.
+   --  A number from First to Last.
 
 end Random_Numbers;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The object of a reassembly, outside any stack: values of 19 bytes, asked
---  for segment by segment.
+--  The object of a reassembly, outside any stack: values of 19 bytes,
+--  requested segment by segment.
 
 with Ravenchart.Can.Iso_Tp.Reassemblies;
 with System;

@@ -1,7 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A processor that the mailbox of a port releases, and what it did.
+--  A processor that the mailbox of a port releases, and the record of its
+--  releases.
 
 with System;
 with Ada.Real_Time;
@@ -12,7 +13,7 @@ with Ravenchart.Sporadic_Processors;
 package Released is
 
    Separation : constant := 50_000;
-   --  In ns: of two releases.
+   --  The separation of two releases in ns.
 
    type Row is (Handle);
 
@@ -34,7 +35,7 @@ package Released is
       Capacity     => 2,
       Ceiling      => System.Default_Priority + 6,
       Policy       => Ravenchart.Queueing.Drop_Oldest);
-   --  Of nobody who is released.
+   --  A queue that releases no processor.
 
    package Processor is new Ravenchart.Sporadic_Processors
      (Name               => "released",
@@ -56,10 +57,10 @@ package Released is
       function Handled return Natural;
 
       function In_Order return Boolean;
-      --  Each release found the value of its number.
+      --  Has each release found the value of its number?
 
       function Last_At return Ada.Real_Time.Time;
-      --  When the last one was handled.
+      --  The time at which the last one was handled.
 
    private
       Count   : Natural := 0;

@@ -16,27 +16,28 @@ package Simulated is
    use Ravenchart.Can;
 
    Bit : constant Ravenchart.Nanoseconds := 2_000;
-   --  At 500 kbit/s.
+   --  The bit time in ns at 500 kbit/s.
 
    Net      : Networks.Network;
    Result   : Buses.Outcome;
    Receipts : Networks.Receipt_List;
 
    procedure Start (Nodes : Bus_Nodes.Node_Index);
-   --  A new bus with so many nodes.
+   --  Begin a new bus with so many nodes.
 
    procedure Send
      (I     : Bus_Nodes.Node_Index;
       Frame : Bus_Frames.Bus_Frame;
       Tag   : Interfaces.Unsigned_32 := 1);
-   --  Node I wants to send.
+   --  Request of node I to send a frame.
 
    procedure Step (Fault : Bus_Faults.Fault := Bus_Faults.No_Fault);
-   --  What begins next, into Result and Receipts; silence if nothing does.
+   --  Carry out the next event on the bus, into Result and Receipts; Silence
+   --  if there is none.
 
    procedure Happen
      (Kind : Line_Events.Event_Kind; Node : Bus_Nodes.Node_Index := 1);
-   --  Something happens to the line; who babbles sends identifier 0.
+   --  Apply an event to the line; a node that babbles sends identifier 0.
 
    function Plain
      (Id : Identifier; Data : Interfaces.Unsigned_64 := 0)

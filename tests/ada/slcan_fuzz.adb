@@ -1,14 +1,14 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Random byte strings through the slcan parser: a number of them, and how
---  many of the first lines are to be shown, are the two arguments. A quarter
---  are any bytes, a quarter bytes that lines are made of, a quarter lines of
---  frames, and a quarter such lines with a byte changed. The program stops
---  with "not ok" where a line is taken for a frame that is written otherwise,
---  or the line of a frame for anything else. It shows
---  HEX/OUTCOME[/FORMAT/KIND/ID/LENGTH/PAYLOAD], then the number of frames;
---  KIND of CAN FD frames is DATA_FD, their PAYLOAD the sum of their words.
+--  Random byte strings through the slcan parser. The two arguments are their
+--  number, and the number of first lines to print. A quarter are any bytes, a
+--  quarter bytes that lines are made of, a quarter lines of frames, and a
+--  quarter such lines with a byte changed. The program stops with "not ok"
+--  where a line is read as a frame with another line, or the line of a frame
+--  as anything else. It prints HEX/OUTCOME[/FORMAT/KIND/ID/LENGTH/PAYLOAD],
+--  then the number of frames; KIND of CAN FD frames is DATA_FD, their PAYLOAD
+--  the sum of their words.
 
 with Ada.Command_Line;
 with Ada.Text_IO;
@@ -29,10 +29,10 @@ procedure Slcan_Fuzz is
    subtype Byte_Value is Interfaces.Unsigned_8;
 
    Longest : constant := Slcan.Line_Limit + 6;
-   --  Of the strings: some are too long for a line.
+   --  The longest string: some are too long for a line.
 
    Short : constant := 32;
-   --  Half of them have no more, as commands and classic frames.
+   --  The length of half of them at most, as of commands and classic frames.
 
    type Byte_String is array (Positive range 1 .. Longest) of Byte_Value;
 
@@ -49,17 +49,17 @@ procedure Slcan_Fuzz is
    Text   : Byte_String := (others => 0);
    Length : Natural := 0;
    Sent   : Any_Frames.Any_Frame;
-   --  Whose line Text is, or was before it was changed.
+   --  The frame of the line in Text, before a byte was changed.
    Line   : Byte_String := (others => 0);
    Count  : Natural := 0;
-   --  What was fed since the last carriage return.
+   --  The bytes fed since the last carriage return.
    Lines  : Natural := 0;
    Frames : Natural := 0;
    Seed   : Interfaces.Unsigned_64 := 16#9E37_79B9_7F4A_7C15#;
 
    function Random return Interfaces.Unsigned_64;
    --  Marsaglia's xorshift, of period 2**64 - 1, times a constant (Vigna's
-   --  xorshift64*): the low bits alone would follow from those before.
+   --  xorshift64*): without it the low bits would follow from those before.
 
    function Below (Limit : Positive) return Natural
    is (Natural
@@ -77,7 +77,7 @@ procedure Slcan_Fuzz is
    procedure Draw (How : Drawing);
 
    procedure Expect (Fact : String; Holds : Boolean);
-   --  Stop where it does not hold.
+   --  Stop where the fact does not hold.
 
    procedure Judge (Result : Slcan.Outcome; F : Any_Frames.Any_Frame);
    --  Line has ended.

@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Processors that fall silent, each in its own way, and one that does not;
---  their supervisor and what it has found.
+--  their supervisor and its findings.
 
 with Ada.Command_Line;
 with System;
@@ -26,12 +26,13 @@ package Supervised is
    --  The deadline, and a margin of 50 ms.
 
    Limit_Of_Healthy : constant := 500_000_000;
-   --  It is not silent unless the machine keeps it from running this long.
+   --  The healthy processor is not silent unless the machine delays it for so
+   --  long.
 
    Patience : constant Ravenchart.Nanoseconds :=
      (if Ada.Command_Line.Argument_Count > 0 then 1_500_000_000
       else 300_000_000_000);
-   --  Only a main program that is to wait is given up: on a busy machine the
+   --  Only a main program that has to wait is given up: on a busy machine the
    --  other one may be late as well.
 
    type Processor is (Watch_Healthy, Watch_Served, Watch_Stuck);
@@ -41,8 +42,8 @@ package Supervised is
       Found  : Ravenchart.Nanoseconds := 0;
       Before : Ravenchart.Event_Count := 0;
    end record;
-   --  How often a processor was found silent; when, and how many releases
-   --  it had completed.
+   --  How often a processor was found silent; the time, and the number of its
+   --  completed releases then.
 
    type Finding_Table is array (Processor) of Finding;
 

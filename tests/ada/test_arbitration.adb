@@ -1,7 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Arbitration: who stays on the bus, and what the others see.
+--  Arbitration: the frame that stays on the bus, and the place at which the
+--  others lose.
 
 with Facts;
 with Interfaces;
@@ -28,10 +29,10 @@ procedure Test_Arbitration is
    --  Any format and kind; few identifiers, so that many are close.
 
    function Loses_In (First, Second : Contender) return Loss;
-   --  The place in which Second loses; 0 when it does not.
+   --  The place at which Second loses; 0 when it does not.
 
    function Is_Right (Contenders : Contender_List) return Boolean;
-   --  Does the contest end as pairs of the rules say?
+   --  Does the contest end as the rules for pairs require?
 
    procedure Check_Rules;
 
@@ -157,7 +158,7 @@ procedure Test_Arbitration is
       Right : Boolean := True;
 
       function First_Difference (A, B : Wire.Image) return Levels.Level;
-      --  What A sends where the bits on the bus differ first.
+      --  The bit of A at the first difference of the bits on the bus.
 
       function First_Difference (A, B : Wire.Image) return Levels.Level is
       begin

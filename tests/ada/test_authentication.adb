@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Authentication: what stands where in a frame, and attacks between sender
---  and receiver.
+--  Authentication: the layout of a frame, and attacks between sender and
+--  receiver.
 --
---  The first argument is how many attacks of each kind are tried, 10 unless
---  given. With "print" as the argument: sealed frames of every setting, a
---  line each, for a comparison with another implementation.
+--  The first argument is the number of attacks of each kind, 10 by default.
+--  With "print" as the argument: sealed frames of every setting, a line each,
+--  for a comparison with another implementation.
 
 with Ada.Text_IO;
 with Aes_Cmac;
@@ -40,12 +40,12 @@ procedure Test_Authentication is
    type Attack is
      (Altered, Cut, Repeated, Replayed, Late, Forged, Other_Key,
       Other_Message, Set_Back, Lost);
-   --  Altered: one to three bits. Cut: a shorter or longer frame. Repeated:
-   --  at once; Replayed: any of the last 40; Late: behind up to ten others.
-   --  Forged: all bytes are random, but perhaps the next freshness value.
+   --  Altered: one to three bits. Cut: a shorter or longer frame. Repeated: at
+   --  once; Replayed: any of the last 40; Late: behind up to ten others.
+   --  Forged: all bytes are random, except perhaps the next freshness value.
    --  Other_Key, Other_Message: sealed with the next value, but another key or
    --  data identifier. Set_Back: sealed with the right key and an older value,
-   --  as a sender does that has lost its own. Lost: up to 200 frames.
+   --  as by a sender that has lost its value. Lost: up to 200 frames.
 
    function Blank (S : Setting; Number : Natural) return Any_Frame
    is (To_Any
@@ -53,7 +53,7 @@ procedure Test_Authentication is
             (16#100#, Base, S.Length,
              Fd_Words'(0 => Unsigned_64 (Number), others => 0),
              Constant_Rate)));
-   --  A frame before it is sealed: its data tell its number.
+   --  A frame before it is sealed: its data hold its number.
 
    function Sealed
      (S      : Setting;
@@ -67,23 +67,23 @@ procedure Test_Authentication is
       S      : Setting;
       F      : Any_Frame;
       Result : out Status);
-   --  As generated code does it.
+   --  Receive a frame as generated code does.
 
    procedure Flip (F : in out Any_Frame; Bit : Natural);
-   --  Another bit of the data.
+   --  Invert a bit of the data.
 
    function Image (S : Setting) return String
    is (Natural'Image (S.Length) & Natural'Image (S.Freshness_Bytes)
        & Natural'Image (S.Mac_Bytes));
 
    procedure Check_Layout;
-   --  Where everything stands.
+   --  The position of each part.
 
    procedure Check_Freshness;
    --  The freshness value of a frame, from its low bytes.
 
    procedure Check_Statuses;
-   --  What each status means.
+   --  The condition of each status.
 
    procedure Check_Attacks (S : Setting; Kind : Attack; Times : Positive);
    --  Attacks of one kind, with good frames between them.
@@ -308,7 +308,7 @@ procedure Test_Authentication is
       --  The next frame of the sender: Old (Sent mod 41).
 
       procedure Arrive (F : Any_Frame; Number : Natural);
-      --  It arrives. 0: it is none that may ever be used.
+      --  The frame arrives. Number is 0 for a frame that may never be used.
 
       procedure Strike;
       --  An attack.

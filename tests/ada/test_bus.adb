@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The bus in virtual time: order, lengths, acknowledgement, errors, and the
---  way back from bus-off.
+--  The bus in virtual time: order, lengths, acknowledgement, errors, and
+--  recovery from bus-off.
 
 with Facts;
 with Interfaces;
@@ -265,8 +265,8 @@ procedure Test_Bus is
       Asked : constant Nanoseconds := 10**9;
 
       procedure Fall_Off (Restart : Restart_Delay := 0);
-      --  Node 1 becomes bus-off, with a frame to send, on a bus that then is
-      --  idle.
+      --  Make node 1 bus-off, with a frame to send, on a bus that is idle from
+      --  then on.
 
       procedure Fall_Off (Restart : Restart_Delay := 0) is
       begin

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A node of a served bus: what it says is what the server reads, what the
---  server says is what it hears, and what follows from that.
+--  A node of a served bus: the server reads the records of the node as they
+--  were sent, the node those of the server, and the right consequences follow.
 
 with Facts;
 with Interfaces;
@@ -33,7 +33,7 @@ procedure Test_Bus_Members is
      Bus_Records.Welcome ("can0", True, 500_000, 2_000_000, 7, 9, 255);
 
    function Is_Read (F : Any_Frames.Any_Frame) return Boolean;
-   --  Does the server read the request of F as it was meant?
+   --  Does the server read the request of F unchanged?
 
    function Is_Read (F : Frame) return Boolean
    is (Is_Read (Any_Frames.To_Any (F)));
@@ -48,10 +48,11 @@ procedure Test_Bus_Members is
          (16#123#, Base, Fd_Frames.Length_Of (Code),
           Words => (others => 16#8877_6655_4433_2211#), Rate => Rate));
 
-   function Is_Deaf
+   function Rejects
      (Bytes : Bus_Records.Image; First, Last : Bus_Records.Position)
       return Boolean;
-   --  Is Bytes broken whichever bit from byte First to Last is another?
+   --  Is Bytes Broken after the inversion of any one bit from byte First to
+   --  Last?
 
    function Told (Transmit, Receive : Error_Count) return Answer
    is (Kind            => State_Told,
@@ -86,10 +87,10 @@ procedure Test_Bus_Members is
    end Is_Read;
 
    -------------
-   -- Is_Deaf --
+   -- Rejects --
    -------------
 
-   function Is_Deaf
+   function Rejects
      (Bytes : Bus_Records.Image; First, Last : Bus_Records.Position)
       return Boolean is
    begin
@@ -106,7 +107,7 @@ procedure Test_Bus_Members is
          end loop;
       end loop;
       return True;
-   end Is_Deaf;
+   end Rejects;
 
    --------------------
    -- Check_Requests --
@@ -226,29 +227,29 @@ procedure Test_Bus_Members is
    begin
       Facts.Check
         ("a welcome of another version, mark or form is broken",
-         Is_Deaf (Welcome, 3, 8) and then Is_Deaf (Welcome, 18, 24)
-         and then Is_Deaf (Welcome, 29, 40)
-         and then Is_Deaf (Welcome, 57, 88));
+         Rejects (Welcome, 3, 8) and then Rejects (Welcome, 18, 24)
+         and then Rejects (Welcome, 29, 40)
+         and then Rejects (Welcome, 57, 88));
       Bad (25) := 16#20#;
       Facts.Check
         ("a name with a blank is broken", Heard (Bad).Kind = Broken);
       Facts.Check
         ("a bus state that does not fit its counters is broken",
-         Is_Deaf (State, 2, 8) and then Is_Deaf (State, 17, 22)
-         and then Is_Deaf (State, 25, 88));
+         Rejects (State, 2, 8) and then Rejects (State, 17, 22)
+         and then Rejects (State, 25, 88));
       Facts.Check
         ("what a confirmation does not have is broken",
-         Is_Deaf (Confirmation, 2, 8)
-         and then Is_Deaf (Confirmation, 21, 88));
+         Rejects (Confirmation, 2, 8)
+         and then Rejects (Confirmation, 21, 88));
       Facts.Check
         ("what a status does not have is broken",
-         Is_Deaf (Refusal, 2, 3) and then Is_Deaf (Refusal, 5, 16)
-         and then Is_Deaf (Refusal, 21, 88));
+         Rejects (Refusal, 2, 3) and then Rejects (Refusal, 5, 16)
+         and then Rejects (Refusal, 21, 88));
       Facts.Check
         ("what a frame does not have is broken",
-         Is_Deaf (Frame_Heard, 4, 4) and then Is_Deaf (Frame_Heard, 7, 8)
-         and then Is_Deaf (Frame_Heard, 17, 24)
-         and then Is_Deaf (Frame_Heard, 28, 88));
+         Rejects (Frame_Heard, 4, 4) and then Rejects (Frame_Heard, 7, 8)
+         and then Rejects (Frame_Heard, 17, 24)
+         and then Rejects (Frame_Heard, 28, 88));
    end Check_Broken_Answers;
 
    ------------------

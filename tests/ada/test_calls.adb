@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Calls of another node: one waits, late and repeated frames are told apart.
---  What is read there is the last that came, and told to be old once.
+--  Calls of another node: one waits, late and repeated frames are recognised.
+--  A read value is the last one that came, and its age is reported once.
 
 with Facts;
 with Objects;

@@ -23,11 +23,11 @@ procedure Test_Controller is
    --  The literal alone would be hidden by package Standard.
 
    procedure Settle;
-   --  Let the bus carry what was sent.
+   --  Wait until the bus has carried the frames that were sent.
 
    procedure Await (Received : Ravenchart.Event_Count);
-   --  Until so many frames have come, however busy the machine is; for a
-   --  minute at most.
+   --  Wait until so many frames have come, for a minute at most: the machine
+   --  may be busy.
 
    procedure Settle is
    begin

@@ -2,8 +2,8 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Frames between the driver "ctucanfd", on the core that the environment
---  names, and the core behind it, which is served by its registers: CAN FD
---  and classic ones, of every length, both ways.
+--  names, and the core behind it, which the test accesses by its registers.
+--  CAN FD and classic frames, of every length, both ways.
 
 with Ada.Real_Time;
 with Ctu_Pair;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames as a CTU CAN FD keeps them, there and back and out of any words;
---  and what the words of its registers mean.
+--  Frames in the format of a CTU CAN FD core, converted both ways and from any
+--  words; and the meaning of the words of its registers.
 
 with Facts;
 with Interfaces;
@@ -212,7 +212,7 @@ procedure Test_Ctu_Frames is
         (Rate  : Registers.Hertz;
          T     : out Registers.Bit_Timing;
          Found : out Boolean);
-      --  With the clock of the PCI card.
+      --  Choose a timing with the clock of the PCI card.
 
       procedure Choose_Nominal
         (Rate  : Registers.Hertz;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Error counters, the states they lead to, the way back from bus-off, and
---  the error frames that a node may send.
+--  Error counters, the states that follow from them, recovery from bus-off,
+--  and the error frames that a node may send.
 
 with Facts;
 with Ravenchart.Can;
@@ -17,7 +17,7 @@ procedure Test_Fault_Confinement is
 
    procedure Repeat
      (N : in out Node; Event : Fault_Event; Times : Positive);
-   --  The same event again and again.
+   --  Count the same event again and again.
 
    function Listen
      (N : Node; Bus : Levels.Level; Bits : Positive) return Node;
@@ -29,7 +29,7 @@ procedure Test_Fault_Confinement is
    is (Fault_Confinement.State (N) = State
        and then Transmit_Errors (N) = Transmit
        and then Receive_Errors (N) = Receive);
-   --  Is N just so?
+   --  Does N have exactly these counters and this state?
 
    procedure Check_Transmitter;
 

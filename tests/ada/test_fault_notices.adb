@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The log of a controller's faults, and the notices of it: every sequence
---  of states up to a length, looked at as often as one likes, against a
---  count of its own.
+--  The log of a controller's faults, and the notices of it: every sequence of
+--  states up to a length, with looks after any of them, against a separate
+--  count.
 
 with Facts;
 with Ravenchart;
@@ -17,7 +17,7 @@ procedure Test_Fault_Notices is
    use type Ravenchart.Execution_Count;
 
    Length : constant := 6;
-   --  States in a sequence: 4 ** 6 sequences, and 2 ** 6 ways to look.
+   --  States in a sequence: 4 ** 6 sequences, and 2 ** 6 patterns of looks.
 
    subtype Index is Positive range 1 .. Length;
 
@@ -26,16 +26,17 @@ procedure Test_Fault_Notices is
    type Look_List is array (Index) of Boolean;
 
    function Sequence (Number : Natural) return State_List;
-   --  The sequence of that number, from 0.
+   --  The sequence with this number, from 0.
 
    function Looks (Number : Natural) return Look_List;
-   --  Where one looks, in the way of that number, from 0; at the end always.
+   --  The pattern of looks with this number, from 0; the last state has a look
+   --  always.
 
    procedure Check_Single_Changes;
    --  A look after each state.
 
    procedure Check_Any_Looks;
-   --  Looks now and then.
+   --  All patterns of looks.
 
    procedure Check_Counts;
    --  The counts of the log.

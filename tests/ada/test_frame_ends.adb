@@ -2,8 +2,9 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  The end of a frame (ISO 11898-1 (2015), end of frame, overload frame and
---  intermission): when a receiver takes it, when its transmitter does, and
---  what a disturbance there does; and when the bit rate is switched.
+--  intermission). The bit at which it is valid for a receiver and for its
+--  transmitter, the effect of a disturbance there, and the switch of the bit
+--  rate.
 
 with Facts;
 with Ravenchart.Can;
@@ -27,19 +28,19 @@ procedure Test_Frame_Ends is
 
    function Bits_Of (Frame : Bus_Frames.Bus_Frame) return Nanoseconds
    is (Nanoseconds (Wire.Length (Bus_Frames.Image_Of (Frame))) - 3);
-   --  Up to the last bit of the end of frame.
+   --  The duration up to the last bit of the end of frame.
 
    function Listeners return Natural;
-   --  How many have heard the last frame.
+   --  The number of nodes that have received the last frame.
 
    procedure Make_Passive (I : Node_Index);
-   --  Node I becomes error-passive; it counts 128 receive errors.
+   --  Make node I error-passive: it counts 128 receive errors.
 
    procedure Disturb
      (Bit  : Positive;
       Node : Natural := Bus_Faults.Everyone;
       Kind : Bus_Faults.Fault_Kind := Bus_Faults.Disturbed_End);
-   --  Node 1 of four sends a frame, which meets this fault.
+   --  Node 1 of four sends a frame with this fault.
 
    function Pause return Nanoseconds
    is (Net.Bus.Free_At (1) / Bit - Bits_Of (Plain (5)));
@@ -213,7 +214,7 @@ procedure Test_Frame_Ends is
           and then Listeners = 3
           and then Result.Overload = 1
           and then Transmit_Errors (1) = 0);
-      --  Everyone has the frame, and an overload frame follows.
+      --  Have all nodes received the frame, and does an overload frame follow?
    begin
       Disturb (8);
       Facts.Check

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  CAN frames: payloads, bytes, and the way through slcan lines and back;
+--  CAN frames: payloads, bytes, and the conversion to slcan lines and back;
 --  CAN FD frames and their lengths.
 
 with Facts;
@@ -26,7 +26,7 @@ procedure Test_Frames is
    --  The next number of a linear congruential generator.
 
    function Survives (F : Frame) return Boolean;
-   --  Does F come back from its line, in one piece?
+   --  Is F unchanged after the conversion to its line and back?
 
    procedure Check_Payloads;
 

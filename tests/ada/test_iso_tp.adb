@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  ISO-TP: transfers of all lengths between the two ends, with each way of
---  flow control; what a transfer of wrong, lost and late segments comes to;
---  and any bytes at all.
+--  ISO-TP: transfers of all lengths between the two ends, with each kind of
+--  flow control; the outcome of transfers with wrong, lost and late segments;
+--  and arbitrary bytes.
 
 with Facts;
 with Interfaces;
@@ -33,7 +33,7 @@ procedure Test_Iso_Tp is
    --  A number from 0 on (xorshift, Marsaglia 2003).
 
    function Value_Of (Length : Value_Length) return Value_Bytes;
-   --  A value of that length; 0 beyond it.
+   --  A value of this length; 0 beyond it.
 
    type Link is record
       From     : Sender;
@@ -45,7 +45,7 @@ procedure Test_Iso_Tp is
       Fault    : Transfer_Fault := None;
       Result   : Outcome := Ignored;
    end record;
-   --  Two ends, and what has come of the last execution.
+   --  The two ends, and the outcome of the last execution.
 
    procedure Turn
      (Item : in out Link;
@@ -54,7 +54,7 @@ procedure Test_Iso_Tp is
       Code : Octet := 0;
       Lose : Boolean := False);
    --  One execution of the row, 1 ms long; the answer comes before the next
-   --  one. A segment may get lost.
+   --  one. Lose: the segment is lost.
 
    procedure Check_All_Lengths;
 
@@ -150,7 +150,7 @@ procedure Test_Iso_Tp is
                     (Length, Block, 50_000_000, 60_000_000);
                   V : constant Value_Bytes := Value_Of (Length);
                   L : Link;
-                  --  After the first segment so many follow.
+                  --  The number of segments that follow the first one.
                   More   : constant Natural :=
                     (if Length <= 7 then 0 else (Length - 6 + 6) / 7);
                   Rounds : constant Natural :=

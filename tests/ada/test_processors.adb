@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Periodic and sporadic processors in real time. The machine may be busy:
---  what is checked holds however late a task is run.
+--  Periodic and sporadic processors in real time. The machine may be busy: the
+--  facts hold however late a task runs.
 
 with Ada.Real_Time;
 with Facts;

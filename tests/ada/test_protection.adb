@@ -1,13 +1,13 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  End-to-end protection: error patterns one by one, and faults of the way
+--  End-to-end protection: error patterns one by one, and faults of the bus
 --  between sender and receiver.
 --
---  The first argument is how many faults of each kind are injected, 10 unless
---  given; from 1_000 on the error patterns have three bits where the profile
---  finds as many, else two. With "print" as the argument: protected frames of
---  every setting, a line each, for a comparison with another implementation.
+--  The first argument is the number of faults of each kind, 10 by default.
+--  From 1_000 on the error patterns have three bits where the profile finds as
+--  many, else two. With "print" as the argument: protected frames of every
+--  setting, a line each, for a comparison with another implementation.
 
 with Ada.Text_IO;
 with Facts;
@@ -46,15 +46,16 @@ procedure Test_Protection is
 
    function Found_Bits (P : Profile) return Positive
    is (if P in Profile_1 | Profile_11 then 2 else 3);
-   --  Wrong bits that the CRC always finds, in frames of these lengths, but
-   --  for those of the counter where the data identifier depends on it.
+   --  The number of wrong bits that the CRC always finds in frames of these
+   --  lengths, except bits of a counter on which the data identifier depends.
 
    function Is_Tied (S : Setting; Bit : Natural) return Boolean
    is (Bit in 8 .. 11
        and then
          (S.Kind = Profile_2
           or else (S.Kind = Profile_1 and then S.Mode = Alternating)));
-   --  Is it a bit of the counter, and the data identifier depends on it?
+   --  Is it a bit of the counter, and does the data identifier depend on the
+   --  counter?
 
    type Fault is
      (Corruption, Repetition, Loss, Insertion, Delayed, Resequencing,
@@ -77,7 +78,7 @@ procedure Test_Protection is
    --  A frame before it is protected.
 
    procedure Flip (F : in out Any_Frame; Bit : Natural);
-   --  Another bit of the data.
+   --  Invert a bit of the data.
 
    function Image (S : Setting) return String
    is (Profile'Image (S.Kind) & " " & Id_Mode'Image (S.Mode)
@@ -87,10 +88,10 @@ procedure Test_Protection is
    --  The examples of PRS_E2EProtocol: all data 0, two frames.
 
    procedure Check_Statuses;
-   --  What each status means.
+   --  The condition of each status.
 
    procedure Check_Patterns (S : Setting; Bits : Positive);
-   --  All errors of one to so many bits, 3 at most.
+   --  All errors of one bit to so many bits, 3 at most.
 
    procedure Check_Faults (S : Setting; Kind : Fault; Times : Positive);
    --  Faults of one kind, with six good frames or more between them.
@@ -258,7 +259,7 @@ procedure Test_Protection is
       Room : constant Positive :=
         Positive'Min
           (20, Integer (Last_Counter (S.Kind)) - Integer (S.Max_Delta));
-      --  Frames as old as this are found by the counter.
+      --  The oldest age at which the counter identifies a frame.
 
       Old     : array (0 .. 20) of Any_Frame;
       Sent    : Natural := 0;
@@ -269,11 +270,11 @@ procedure Test_Protection is
       Newest  : Natural := 0;
 
       procedure Make;
-      --  The next frame of the sender: Old (Sent mod 21). Its data tell its
+      --  The next frame of the sender: Old (Sent mod 21). Its data hold its
       --  number.
 
       procedure Arrive (F : Any_Frame; Number : Natural);
-      --  It arrives. 0: it is none that may ever be used.
+      --  The frame arrives. Number is 0 for a frame that may never be used.
 
       ----------
       -- Make --
@@ -393,8 +394,8 @@ procedure Test_Protection is
             Passed := Passed + 1;
          end if;
       end loop;
-      --  one of 256 has the right CRC, and of these Max_Delta of 16 counters
-      --  fit; three times that is out of reach
+      --  One of 256 has the right CRC, and of these Max_Delta of 16 counters
+      --  fit; three times that number is practically impossible.
       Facts.Check
         ("of random frames no more are used than the bound says: "
          & Image (S),

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What is kept about a run: health counters, traces, monitors.
+--  The records of a run: health counters, traces, monitors.
 
 with Facts;
 with Objects;

@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  The pure parts of regions: ports, timers, schedule slots, event lists,
---  deferral, and the list of what fires in a step.
+--  deferral, and the list of the transitions of a step.
 
 with Facts;
 with Instance_Store;

@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The mailbox of a port that releases a processor: what it holds, whom it
---  wakes, and what the processor makes of it in real time. The machine may be
---  busy: what is checked holds however late a task is run.
+--  The mailbox of a port that releases a processor: its content, the task that
+--  it wakes, and the releases in real time. The machine may be busy: the facts
+--  hold however late a task runs.
 
 with Ada.Real_Time;
 with Facts;

@@ -24,7 +24,7 @@ procedure Test_Slcan is
    --  Feed a line and its carriage return.
 
    function Says (Text : String; Expected : Slcan.Outcome) return Boolean;
-   --  Is this what the line is taken for?
+   --  Does the parser read the line as Expected?
 
    procedure Check_Frames;
 

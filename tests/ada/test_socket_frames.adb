@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames as Linux hands them over: there and back, and error reports.
+--  Frames in the format of Linux, converted both ways, and error reports.
 
 with Facts;
 with Interfaces;
@@ -21,19 +21,19 @@ procedure Test_Socket_Frames is
    Bits : constant Interfaces.Unsigned_64 := 16#8877_6655_4433_2211#;
 
    function Survives (F : Frame) return Boolean;
-   --  Does F come back in one piece?
+   --  Is F unchanged after the conversion both ways?
 
    function Survives (F : Fd_Frames.Fd_Frame) return Boolean
    is (Sockets.Is_Frame (Sockets.Item_Of (F))
        and then Sockets.Is_Fd (Sockets.Item_Of (F))
        and then Fd_Frames."=" (Sockets.Fd_Frame_Of (Sockets.Item_Of (F)), F));
-   --  Does F come back in one piece?
+   --  Is F unchanged after the conversion both ways?
 
    function Report
      (Class : Interfaces.Unsigned_32;
       Detail, Transmit, Receive : Interfaces.Unsigned_8 := 0)
       return Sockets.Item;
-   --  What a driver of Linux reports.
+   --  An error report of a driver of Linux.
 
    procedure Check_Lengths;
 

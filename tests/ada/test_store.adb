@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Queues and blackboards: order, overflow and fill, and what offers report
---  and answer.
+--  Queues and blackboards: order, overflow and fill, and the reports and
+--  reactions of offers.
 
 with Facts;
 with Objects;
@@ -101,7 +101,7 @@ procedure Test_Store is
 
       function Holds
         (First : Integer; Second : Integer; Third : Integer) return Boolean;
-      --  Takes three elements from the queue that drops.
+      --  Takes three elements from the queue with policy Drop_Oldest.
 
       ---------------
       -- Overflows --

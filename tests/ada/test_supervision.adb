@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  When a processor is silent, by all small cases and in real time. The
---  machine may be busy: what is checked holds however late a task is run.
---  With the argument "wait" the main program never ends the process.
+--  Silence of a processor, by all small cases and in real time. The machine
+--  may be busy: the facts hold however late a task runs. With the argument
+--  "wait" the main program never ends the process.
 
 with Ada.Command_Line;
 with Ada.Real_Time;
@@ -22,14 +22,14 @@ procedure Test_Supervision is
    use all type Supervised.Processor;
 
    procedure Check_All_Small_Cases;
-   --  Against a count of the releases that should have completed.
+   --  Compare with a count of the releases that should have completed.
 
    procedure Check_Large_Cases;
 
    procedure Await_Stuck;
-   --  Until the endless loop is found. The first to be found gets the lowest
-   --  priority: otherwise two of these programs would take two cores for
-   --  ever, where they may use the priorities of real time.
+   --  Wait until the endless loop is found. The first one found gets the
+   --  lowest priority: otherwise two of these programs would take two cores
+   --  for ever, where they may use real-time priorities.
 
    procedure Check_Findings;
 

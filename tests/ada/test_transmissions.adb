@@ -2,8 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Transmission modes: every sequence of values up to a length, in each mode,
---  with each minimum delay and period, against what the definitions say of
---  the frames that have gone before.
+--  with each minimum delay and period, compared with the definitions.
 
 with Facts;
 with Interfaces;
@@ -17,7 +16,7 @@ procedure Test_Transmissions is
    use type Ravenchart.Execution_Count;
 
    Length : constant := 7;
-   --  Executions of the row.
+   --  The number of executions of the row.
 
    subtype Choice is Natural range 0 .. 3;
    --  In an execution the row sends nothing, value 0, or value 1; with 3 it
@@ -34,7 +33,7 @@ procedure Test_Transmissions is
           Interfaces.Unsigned_64 (Value)));
 
    function Sequence (Number : Natural) return Choice_List;
-   --  The sequence of that number, from 0.
+   --  The sequence with this number, from 0.
 
    function Follows (Given : Choice_List; S : Setting) return Boolean;
    --  Does the sender send in the executions that the definitions name?
@@ -63,7 +62,7 @@ procedure Test_Transmissions is
       Last  : Natural := 0;
       --  The execution of the last frame, from 1; 0: none yet.
       Sent  : Natural := 0;
-      --  Its value.
+      --  The value of that frame.
       Value : Natural := 0;
       Known : Boolean := False;
       Asked : Boolean := False;

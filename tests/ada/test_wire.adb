@@ -5,7 +5,7 @@
 --
 --  The check values of the CRCs are those of the CRC catalogue of G. Cook
 --  (CRC-15/CAN, CRC-17/CAN-FD, CRC-21/CAN-FD). Lengths and check fields of
---  whole frames are what the frame generators by P. Molinaro give for them
+--  whole frames are the results of the frame generators by P. Molinaro
 --  (repository pierremolinaro/codes-can, state of 14 March 2025).
 
 with Ada.Text_IO;
@@ -57,10 +57,10 @@ procedure Test_Wire is
    procedure Check_Fd;
 
    function Stuffing (Picture : Wire.Image) return Fd_Bytes;
-   --  The data behind this head with the most stuff bits.
+   --  The data that cause the most stuff bits after this head.
 
    procedure Print_Lengths;
-   --  A line for each length, for the test that knows the analysis.
+   --  Print a line for each length, for the test that knows the analysis.
 
    ------------
    -- Random --
@@ -365,10 +365,11 @@ procedure Test_Wire is
       Plain   : Wire.Bit_Count;
 
       procedure Note (Picture : Wire.Image; Rate : Bit_Rate_Use);
-      --  Remember the longest phases.
+      --  Keep the longest phases.
 
       procedure Print (Kind : String; Format : Frame_Format; Size : Natural);
-      --  One line: frame, length, bits without stuff bits, longest phases.
+      --  Print one line: frame, length, bits without stuff bits, longest
+      --  phases.
 
       function Some_Id (Format : Frame_Format; I : Natural)
         return Identifier;

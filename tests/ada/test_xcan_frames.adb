@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames as the CAN controller of Zynq keeps them, there and back and out of
---  any words; and what the words of its registers mean.
+--  Frames in the format of the CAN controller of Zynq, converted both ways and
+--  from any words; and the meaning of the words of its registers.
 
 with Facts;
 with Interfaces;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Processors under test and what they did.
+--  Processors under test and the log of their activities.
 
 with System;
 with Ada.Real_Time;
@@ -28,7 +28,7 @@ package Workload is
      with Priority => System.Default_Priority + 8
    is
       procedure Add (Item : Entry_Record);
-      --  Ignored when the log is full.
+      --  Add an entry, unless the log is full.
 
       function Count return Natural;
 
@@ -60,7 +60,7 @@ package Workload is
    procedure Note_Miss;
 
    procedure Note_Overrun (Activity : Job; Used : Ravenchart.Nanoseconds);
-   --  Used of more than 20 ms, in ms as the value of the entry.
+   --  Log an execution of more than 20 ms, with its time in ms as the value.
 
    procedure Ignore_Miss;
 

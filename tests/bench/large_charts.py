@@ -121,15 +121,15 @@ def _level(n: int) -> list[Json]:
     return [{"set": "level", "to": f"max(count - {n % 10}, 0)"}]
 
 
-def orthogonal_chart(lanes: int, leaves: int) -> str:
+def orthogonal_chart(count: int, leaves: int) -> str:
     """A system of one region: an orthogonal state of so many regions, each a ring of leaves.
 
-    It has ``(leaves / lanes) ** lanes`` configurations.
+    It has ``(leaves / count) ** count`` configurations.
     """
     regions: Json = {}
     transitions: Json = {}
-    each = leaves // lanes
-    for number in range(1, lanes + 1):
+    each = leaves // count
+    for number in range(1, count + 1):
         names = [f"S{index}_of_{number}" for index in range(1, each + 1)]
         regions[f"Region_{number}"] = {"initial": names[0], "states": {name: {} for name in names}}
         for index, name in enumerate(names):
@@ -144,5 +144,5 @@ def orthogonal_chart(lanes: int, leaves: int) -> str:
     transitions["stop"] = {"from": "Running", "to": "Idle", "on": "Halt", "effect": reset}
     states: Json = {"Idle": {}, "Running": {"regions": regions}}
     events = ["Start", "Halt"]
-    events += [f"{word}_{number}" for number in range(1, lanes + 1) for word in ("Go", "Back")]
+    events += [f"{word}_{number}" for number in range(1, count + 1) for word in ("Go", "Back")]
     return _system(f"Regions_{leaves}", "Idle", states, transitions, events)

@@ -141,7 +141,7 @@ def target_in_code(file: str, units: Units) -> Iterator[Broken]:
         other = following(last, entries) if last in entries and place in firing else None
         if other is not None:
             yield place, "enter", put(row[-1], Do(other))
-    for place, set_ in _set_by_fire(unit, "Leaf", "Place"):
+    for place, set_ in _set_by_fire(unit, "Leaf", "Configuration"):
         yield place, "stay", put(set_, NULL)
 
 

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
@@ -14,11 +14,11 @@ from ravenchart.gen.emit.ada.expressions import (
     COMPARISONS,
     TRUE,
     Arg,
-    Attribute,
     Call,
     CaseExpr,
     ChoiceList,
     Expr,
+    IfExpr,
     Membership,
     OperatorChain,
     Prefix,
@@ -26,25 +26,27 @@ from ravenchart.gen.emit.ada.expressions import (
     both,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
-from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Return
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement
 from ravenchart.gen.emit.charts.shape import PASSING
 
 from .mutants import Broken, Units
 from .nodes import (
+    Body,
     Put,
     Spot,
+    bodies,
     body_of,
     conjuncts,
     each_following,
     exchanged,
-    following,
     names_of,
     put,
     statements,
     whole,
 )
 
-_IN_SOURCE, _ENABLED, _SELECTED = ref("In_Source"), ref("Enabled"), ref("Selected")
+_IN_SOURCE, _ENABLED = ref("In_Source"), ref("Enabled")
+_SELECTED = "Selected"
 _NOW, _NONE = ref("Now"), ref("None")
 _COMPARED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
 
@@ -75,23 +77,29 @@ def _alternatives(unit: Unit, function: str) -> list[tuple[list[DottedName], Spo
 
 
 def source_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """The transitions of another lane, among which one is selected; the one found is forgotten."""
-    lanes = [
-        [end for n in range(2) if isinstance((end := call.at("args", n, "value")).node, Attribute)]
-        for call in _calls(units[file], "Choose", _SELECTED)
-    ]
-    for lane in lanes:
-        if (other := following(_nodes(lane), list(map(_nodes, lanes)))) is not None:
-            puts = zip(lane, other, strict=True)
-            yield "Choose", "lane", tuple(one for end, to in puts for one in put(end, to))
-    one = body_of(units[file], _SELECTED.text)
-    for gives in one.inner.within(Return) if one is not None else ():
-        if gives.node.value != _NONE:
-            yield _SELECTED.text, "forget", put(gives.at("value"), _NONE)
+    """The selection of another region; a transition that is found and forgotten."""
+    unit = units[file]
+    asked = [spot.at("value") for spot in _assigned(unit)]
+    for _, puts in each_following([("Choose", call) for call in asked]):
+        yield "Choose", "region", puts
+    for one, alternatives in _searches(unit):
+        for place in range(len(alternatives.node.branches)):
+            yield one.name, "forget", put(alternatives.at("branches", place, 1), _NONE)
 
 
-def _nodes(spots: Sequence[Spot[Expr]]) -> tuple[Expr, ...]:
-    return tuple(spot.node for spot in spots)
+def _assigned(unit: Unit) -> list[Spot[Assign]]:
+    """What `Choose` assigns the selection of each region by."""
+    choose = body_of(unit, "Choose")
+    every = choose.inner.within(Assign) if choose is not None else ()
+    return [one for one in every if isinstance(one.node.value, Call)]
+
+
+def _searches(unit: Unit) -> Iterator[tuple[Body, Spot[IfExpr]]]:
+    """Where a function asks one transition after the other whether it is enabled."""
+    for one in bodies(unit):
+        if one.name.split("_")[0] == _SELECTED and not one.is_expression:
+            for alternatives in one.inner.within(IfExpr):
+                yield one, alternatives
 
 
 def source_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -120,8 +128,14 @@ def _compared(unit: Unit, function: str) -> list[tuple[object, Spot[DottedName]]
 
 
 def trigger_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """Another occurrence for which a segment is selected."""
-    for call in _calls(units[file], "Next_Segment", _SELECTED):
+    """Transitions that are selected for the occurrence of others; a segment for another one."""
+    for one in bodies(units[file]):
+        if one.name.split("_")[0] == _SELECTED:
+            for case in one.inner.within(Case):
+                last = len(case.node.branches) - 1  # `others`
+                rows = [case.at("branches", place, 0) for place in range(last)]
+                yield from ((one.name, "trigger", exchanged(*pair)) for pair in pairwise(rows))
+    for call in _calls(units[file], "Next_Segment", _ENABLED):
         for arg in call.within(Arg):
             if arg.node.value == ref(PASSING):
                 yield "Next_Segment", "trigger", put(arg.at("value"), ref("Conditions"))
@@ -139,12 +153,12 @@ def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
 
 
 def guard_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """The first transition is selected whether it is enabled or not, or one that is not."""
-    one = body_of(units[file], _SELECTED.text)
-    for asks in one.inner.within(IfStatement) if one is not None else ():
-        condition = asks.at("branches", 0, 0)
-        yield _SELECTED.text, "drop guard", put(condition, TRUE)
-        yield _SELECTED.text, "deny guard", put(condition, Prefix("not", condition.node))
+    """A transition is selected whether it is enabled or not, or when it is not."""
+    for one, alternatives in _searches(units[file]):
+        for place in range(len(alternatives.node.branches)):
+            condition = alternatives.at("branches", place, 0)
+            yield one.name, "drop guard", put(condition, TRUE)
+            yield one.name, "deny guard", put(condition, Prefix("not", condition.node))
 
 
 def guard_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -170,14 +184,18 @@ def _guards(condition: Spot[Expr]) -> Iterator[tuple[str, tuple[Put, ...]]]:
 
 
 def priority_in_code(file: str, units: Units) -> Iterator[Broken]:
-    """An outer lane that selects although an inner one does, or before it."""
+    """A later transition that is asked first; an outer region that selects although an inner one
+    does, or before it."""
+    for one, alternatives in _searches(units[file]):
+        rows = [alternatives.at("branches", n) for n in range(len(alternatives.node.branches))]
+        yield from ((one.name, "precede", exchanged(*pair)) for pair in pairwise(rows))
     choose = body_of(units[file], "Choose")
     if choose is None:
         return
     for before, asks in pairwise(statements(choose.inner)):
         if isinstance(asks.node, IfStatement):
             condition = asks.at("branches", 0, 0)
-            yield "Choose", "outer lane", put(condition, TRUE)
+            yield "Choose", "outer region", put(condition, TRUE)
             asked = set(names_of(condition.node))
             if isinstance(before.node, Assign) and before.node.target in asked:
                 yield "Choose", "outer first", exchanged(before, asks)

@@ -27,10 +27,10 @@ LIMITS = {
 }
 
 
-def _lanes(thread: Thread, active: Collection[str]) -> Iterator[tuple[str, ...]]:
-    """The states around each leaf that is active, or all of them where they are told together."""
+def _parts(thread: Thread, active: Collection[str]) -> Iterator[tuple[str, ...]]:
+    """The states around each leaf that is active, or all of them where they are known together."""
     tree = thread.tree
-    leaves = [s for s in active if tree.fills_lane(s)] if thread.parts is not None else []
+    leaves = [s for s in active if tree.is_innermost(s)] if thread.parts is not None else []
     chains: list[Collection[str]] = [tree.chains[leaf] for leaf in leaves]
     for chain in chains or [active]:
         yield tree.ordered(chain)
@@ -53,7 +53,7 @@ def test_every_configuration_and_transition_of_a_run_is_found(
     regions = machine.instances[instance_name(seed)].regions
     for record in machine.run(stimuli_of(events_of(seed, [seed]), system)):
         for name, run in regions.items():
-            for active in _lanes(threads[name], run.configuration()):
+            for active in _parts(threads[name], run.configuration()):
                 assert active in found[name], (record.text(), name)
         effects = {b.removesuffix(".effect") for b in record.behaviours if b.endswith(".effect")}
         assert {e for e in effects if not e.startswith("initial(")} <= fired[record.region]

@@ -15,14 +15,14 @@ from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.region import RegionRun, Step, Stuck
 from ravenchart.behaviour.interpreter.traces import StepRecord
 from ravenchart.behaviour.tree import ChartTree
-from ravenchart.gen.model.statechart import PseudoKind
+from ravenchart.gen.model.statechart import TOP, PseudoKind
 from ravenchart.running.traces.simulated_runs import FollowedChart, observed_simulation
 from tests.support.effort import seeds
 from tests.support.interpreted import stimuli_of, system_of
 from tests.support.random_charts import events_of, model_of
 
 Shown = dict[str, str]
-"""The active leaf by the name of its lane."""
+"""The active leaf by the name of its region; that of the top-level region is empty."""
 
 
 class Noting(RegionRun):
@@ -39,12 +39,12 @@ class Noting(RegionRun):
 
 
 def _shown(run: RegionRun) -> Shown:
-    """The leaves by the lanes that they fill; where a chart has terminated, that alone."""
+    """The leaves by the regions that they fill; where a chart has terminated, that alone."""
     ends = [v for v in run.active.values() if run.tree.kinds.get(v) is PseudoKind.TERMINATE]
     if ends:
-        return {run.region.name: ends[0]}
-    leaves = [state for state in run.configuration() if run.tree.fills_lane(state)]
-    return {run.tree.lane_of[leaf].name: leaf for leaf in leaves}
+        return {TOP.name: ends[0]}
+    leaves = [state for state in run.configuration() if run.tree.is_innermost(state)]
+    return {run.tree.concurrent_region_of[leaf].name: leaf for leaf in leaves}
 
 
 def played(seed: int) -> tuple[list[StepRecord], dict[str, list[Shown]], dict[str, ChartTree]]:
@@ -73,24 +73,24 @@ def test_the_followed_states_are_those_of_the_interpreter(seed: int) -> None:
     for record in records:
         one = followed[record.region]
         assert one.take(record) is None
-        leaves = {lane.name: leaf for lane, leaf in one.leaves()}
+        leaves = {region.name: leaf for region, leaf in one.leaves()}
         assert leaves == noted[record.region][count[record.region]], record.text()
         count[record.region] += 1
     assert sum(count.values()) > 0
 
 
 @pytest.mark.slow
-def test_the_charts_have_final_states_lanes_and_ends() -> None:
+def test_the_charts_have_final_states_orthogonal_regions_and_ends() -> None:
     """Without these the comparison would say little."""
-    lanes = finals = ends = 0
+    several = finals = ends = 0
     for seed in range(60):
         _, noted, trees = played(seed)
         for name, shown in noted.items():
-            lanes += any(len(one) > 1 for one in shown)
+            several += any(len(one) > 1 for one in shown)
             states = trees[name].states
             finals += any(states[s].final for one in shown for s in one.values() if s in states)
             ends += any(s not in states for one in shown for s in one.values())
-    assert lanes > 5 and finals > 5 and ends > 0, (lanes, finals, ends)
+    assert several > 5 and finals > 5 and ends > 0, (several, finals, ends)
 
 
 @pytest.mark.parametrize("seed", seeds(6, 20))

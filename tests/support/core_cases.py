@@ -125,7 +125,7 @@ def two_nodes() -> Network:
         },
         sections=(Section("state", "sense", 40), Section("state", "housekeeping", 120)),
         platforms={
-            "obc": Platform(context_switch=5, tick_period=1_000, tick_cost=10),
+            "obc": Platform(context_switch=5, tick_period=1_000, tick_wcet=10),
             "act": Platform(context_switch=5),
         },
     )

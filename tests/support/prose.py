@@ -30,6 +30,7 @@ PAGES = (
 )
 SPOKEN = (
     *("gen/files", "gen/language", "gen/model", "gen/resolve", "gen/rules", "gen/derive"),
+    "gen/emit",
     *("analysis", "behaviour", "hw_can/bench", "ravenchart/commands", "ravenchart/running"),
     *("ravenchart/databases", "ravenchart/building", "ravenchart/proof", "ravenchart/workbench"),
 )
@@ -43,6 +44,19 @@ TEMPLATES = (
     ROOT / "ravenchart/commands/loopback.html",
     *sorted((ROOT / "ravenchart/workbench/assets").glob("*.html")),
 )
+
+ADA = (
+    *("spark_runtime", "hw_can", "analysis/kernel", "proofs", "tests/ada"),
+    *(
+        str(path.relative_to(ROOT))
+        for part in ("user", "generated")
+        for path in sorted((ROOT / "examples").glob(f"*/{part}"))
+    ),
+)
+"""Folders of Ada: the hand-written, and the generated of the examples."""
+
+ADA_COMMENT = re.compile(r"""((?:[^"'-]|"[^"]*"|(?<![\w)])'.'|'|-(?!-))*)--(.*)""")
+"""Code and comment of a line of Ada."""
 
 SENTENCE = re.compile(r"(?<=[.?!])\)? (?=[\"(`*A-Z0-9]|gnatprove)")
 
@@ -206,6 +220,42 @@ def _of_hashes(name: str, text: str) -> Iterator[Sentence]:
         block.append(said)
         last = number
     yield from sentences(f"{name}:{first}", " ".join(block))
+
+
+def of_ada() -> Iterator[Sentence]:
+    """The sentences of comments in Ada sources and projects."""
+    for folder in ADA:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".ads", ".adb", ".gpr"):
+                name = str(path.relative_to(ROOT))
+                yield from _of_dashes(name, path.read_text(encoding="utf-8"))
+
+
+def _of_dashes(name: str, text: str) -> Iterator[Sentence]:
+    """Comments of Ada: lines that follow each other at one column are one text.
+
+    An empty comment and the box above a subprogram separate texts. A keyword of a header and an
+    indented line begin one that goes on in the lines that are indented further. Identifiers of
+    model elements have no words.
+    """
+    block: list[str] = []
+    first = column = margin = 0
+    hanging = False
+    for number, line in enumerate([*text.splitlines(), ""], 1):
+        found = ADA_COMMENT.fullmatch(line)
+        code, said = found.groups() if found else (line, "")
+        if re.fullmatch(r"-*| .* --|  SPDX-.*", said):
+            said = ""
+        keyword = re.match(r"  (Guarantees|Tasking|Timing|Analysis|Assumptions) {2,}", said)
+        indent = len(said) - len(said.lstrip())
+        goes_on = said and not keyword and not code.strip() and len(code) == column
+        if not (goes_on and indent >= margin and hanging == (indent > margin)):
+            words = re.sub(r"\[[\w. ]+\] ?", "", " ".join(block))
+            yield from sentences(f"{name}:{first}", re.sub(r"\w+(?:\.\w+)+", "X", words))
+            block, first, column = [], number, len(code)
+            margin, hanging = indent, bool(keyword) or indent > 2
+        if said:
+            block.append(said[keyword.end() if keyword else 0 :].strip())
 
 
 def of_templates() -> Iterator[Sentence]:

@@ -37,9 +37,15 @@ WORDS = {
 }
 """Expressions that have a better word in the glossary."""
 
+ADA_WORDS = {r"tells?|told(?!:)": "notifies, reports, distinguishes"}
+"""The same, in hand-written Ada only."""
+
 EXCEPTIONS = {
     "ravenchart": "the exit statuses are a table, printed as one paragraph",
     "gen/language/names.py": "lists of reserved words",
+    "gen/emit/ada/naming.py": "names that generated packages have for themselves",
+    "gen/emit/language/own_names.py": "names that generated packages have for themselves",
+    "gen/emit/nodes/project.py": "templates of project files",
     "gen/files/reference.py": "tables and paragraphs of one page in one text",
     "analysis/exchange/pycpa.py": "a program for pyCPA",
 }
@@ -56,6 +62,7 @@ GROUPS = {
     "explanations": prose.of_explanations,
     "comments": prose.of_comments,
     "templates": prose.of_templates,
+    "ada": prose.of_ada,
 }
 
 
@@ -71,7 +78,8 @@ def complaints(sentence: Sentence) -> Iterator[str]:
     """The rules that a sentence breaks."""
     if OPENINGS.search(sentence.text) and sentence.text not in TITLES:
         yield "name the thing first"
-    for bad, better in WORDS.items():
+    is_ada = re.search(r"^(?!.*/generated/).*\.(ad[sb]|gpr):", sentence.location)
+    for bad, better in (WORDS | ADA_WORDS if is_ada else WORDS).items():
         if found := re.search(rf"\b({bad})", sentence.text, re.I):
             yield f"`{found[0]}`: {better}"
     if sentence.length > LONGEST and sentence.location.split(":")[0] not in EXCEPTIONS:

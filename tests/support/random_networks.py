@@ -120,7 +120,7 @@ def _chain(
         old.rank,
         sender.period,
         sender.deadline,
-        old.cost,
+        old.transmission_time,
         chance.choice((0, 7)),
         old.queue,
     )

@@ -34,7 +34,7 @@ class Message:
     jitter: int
 
     @property
-    def cost(self) -> int:
+    def transmission_time(self) -> int:
         return classic_bits(self.length).time(SECOND // BIT)
 
 
@@ -82,7 +82,7 @@ def bounds(sent: list[Message], *, priority: bool, separation: int) -> dict[int,
             rank=rank(m.identifier),
             period=m.period,
             deadline=m.period,
-            cost=m.cost,
+            transmission_time=m.transmission_time,
             jitter=m.jitter,
             queue="" if priority else f"node {m.node}",
         )
@@ -103,7 +103,7 @@ def test_no_response_exceeds_its_bound(
     allowed = bounds(sent, priority=priority, separation=separation)
     worst, errors = observed(program, sent, priority=priority, separation=separation)
     assert (errors > 50) == (separation > 0)
-    assert all(worst[m.identifier] >= m.cost // 2 for m in sent)
+    assert all(worst[m.identifier] >= m.transmission_time // 2 for m in sent)
     late = {
         identifier: (time, bound)
         for identifier, time in worst.items()
@@ -117,7 +117,8 @@ def test_at_full_load_the_bus_is_never_idle_and_the_bounds_hold(program: Path) -
     """Released together, the urgent ones come within a frame of their bounds."""
     sent = [Message(n % NODES + 1, n, 8, 0, 4_320_000, 0) for n in range(1, 17)]
     frames = [
-        Frame(str(m.identifier), rank(m.identifier), m.period, m.period, m.cost) for m in sent
+        Frame(str(m.identifier), rank(m.identifier), m.period, m.period, m.transmission_time)
+        for m in sent
     ]
     assert load(frames) == 1
     allowed = bounds(sent, priority=True, separation=0)
@@ -125,4 +126,4 @@ def test_at_full_load_the_bus_is_never_idle_and_the_bounds_hold(program: Path) -
     for m in sent:
         bound = allowed[m.identifier]
         assert bound is not None
-        assert worst[m.identifier] <= bound <= worst[m.identifier] * 1.2 + m.cost
+        assert worst[m.identifier] <= bound <= worst[m.identifier] * 1.2 + m.transmission_time

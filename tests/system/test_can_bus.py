@@ -206,7 +206,7 @@ def test_the_end_of_a_frame_is_disturbed_on_demand(start: Start) -> None:
 
 def test_a_fault_that_cannot_be_placed_is_refused(capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["bus", "--port", "0", "--fault", "1:disturbed_end:2:10"]) == 2
-    assert "the bus cannot be told fault=1:disturbed_end:2:10" in capfd.readouterr().err
+    assert "the bus does not accept fault=1:disturbed_end:2:10" in capfd.readouterr().err
 
 
 def test_chance_is_the_same_again(start: Start) -> None:

@@ -118,7 +118,7 @@ with Surgical_Robot.Boards;
 with Surgical_Robot.Left;
 with Surgical_Robot.Right;
 with Surgical_Robot.Servo.Activities;
-with Surgical_Robot.Servo.Differ_Stand_In;
+with Surgical_Robot.Servo.Differ_Fallback;
 
 procedure Closed_Loop is
    use Surgical_Robot;
@@ -149,7 +149,7 @@ begin
    pragma Assert (Passed);
    for Turn in 1 .. 2_000 loop
       Boards.Get_Position (Place);
-      Servo.Differ_Stand_In.Differ (Place, Rate, Before);
+      Servo.Differ_Fallback.Differ (Place, Rate, Before);
       Compare (1, Rate.Axis_1);
       Compare (2, Rate.Axis_2);
       Compare (3, Rate.Axis_3);

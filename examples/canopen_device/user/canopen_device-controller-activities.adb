@@ -15,7 +15,7 @@ is
 
    type Content is
      (Fixed, Of_Node, Heartbeat, Setpoint, Actual_Value, At_Setpoint);
-   --  Where a value comes from; Of_Node adds the node number to a fixed one.
+   --  The source of a value; Of_Node adds the node number to a fixed one.
 
    subtype Writable is Content range Heartbeat .. Setpoint;
 
@@ -42,7 +42,7 @@ is
       (16#1018#, 4, 4, Fixed, 1),                --  serial number
       (16#1400#, 0, 1, Fixed, 2),                --  receive PDO 1
       (16#1400#, 1, 4, Of_Node, 16#200#),        --  its identifier
-      (16#1400#, 2, 1, Fixed, 16#FF#),           --  taken when it comes
+      (16#1400#, 2, 1, Fixed, 16#FF#),           --  takes effect when it comes
       (16#1600#, 0, 1, Fixed, 1),                --  its mapping
       (16#1600#, 1, 4, Fixed, 16#2000_0010#),
       (16#1800#, 0, 1, Fixed, 2),                --  transmit PDO 1
@@ -88,13 +88,13 @@ is
 
    function Size_Of (Command : Octet) return Octets
    is (4 - Command / 4 mod 4);
-   --  That of an expedited transfer which says its size.
+   --  The size that an expedited transfer states.
 
    function Uploaded (Size : Octets) return Octet
    is (16#43# + 4 * (4 - Size));
    --  The command of an expedited response with so many octets.
 
-   --  Values, and what they are in a frame
+   --  Values and their coding in a frame
 
    Signs : constant := 16#1_0000#;
 
@@ -122,7 +122,7 @@ is
         else
           (for all Object of Dictionary =>
              Object.Index /= Index or else Object.Subindex /= Subindex));
-   --  Where the object is, or None.
+   --  The row of the object, or None.
 
    function Has_Index (Index : Canopen_Device.Index) return Boolean
    is (for some Object of Dictionary => Object.Index = Index);
@@ -149,7 +149,7 @@ is
    with
      Pre  => Object.Holds in Writable,
      Post => (if Fault /= No_Error then Objects = Objects'Old);
-   --  Take the value over, or say why not.
+   --  Write the value, or return the reason in Fault.
 
    procedure Download
      (Request : Transfer;
@@ -163,7 +163,7 @@ is
           or else Object.Holds not in Writable
           or else not Is_Expedited (Request.Command)
         then Fault /= No_Error and then Objects = Objects'Old);
-   --  What a client asks to be written, as far as it can be.
+   --  Write the value of a client's request, if possible.
 
    procedure Reply
      (Request     : Transfer;

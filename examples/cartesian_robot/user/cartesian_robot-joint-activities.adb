@@ -15,17 +15,17 @@ is
    --  Trajectory_Step runs every 5 ms.
 
    Acceleration : constant := 800_000;
-   --  Of the profile, in um/s2.
+   --  The acceleration of the profile, in um/s2.
 
    Speed_Step : constant := Acceleration / Steps_Per_Second;
-   --  What the profile's speed changes by in one step, in um/s.
+   --  The change of the profile's speed in one step, in um/s.
 
    Position_Gain : constant := 8;
-   --  Of the controller, in 1/s.
+   --  The gain of the controller, in 1/s.
 
    Seeking_Speed : constant := 40_000;
    Leaving_Speed : constant := 4_000;
-   --  Towards the low end, and off its switch, in um/s.
+   --  The speed towards the low end, and off its switch, in um/s.
 
    function Clamped (Value, Low, High : Number) return Number
    is (Number'Max (Low, Number'Min (High, Value)))
@@ -33,7 +33,7 @@ is
    --  Value, or the nearer end of the range.
 
    procedure Slow_Down (Profile : in out Cartesian_Robot.Profile);
-   --  One step towards standing still.
+   --  One step of the deceleration to a stop.
 
    procedure Approach
      (Target    : Cartesian_Robot.Position;
@@ -163,7 +163,7 @@ is
                       and then Feedback.Value.Limit = Clear)
       then
          Origin := Feedback.Value.Count;
-         --  the last one before the switch lets go is where zero is
+         --  The last position before the switch releases is the origin.
       end if;
 
       Measured.Position :=

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the coordinator tells the operator, written by hand.
+--  The messages of the coordinator to the operator, written by hand.
 
 package body Cartesian_Robot.Robot_Coordinator.Activities
   with SPARK_Mode

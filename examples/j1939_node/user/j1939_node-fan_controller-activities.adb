@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The speed of the fan, written by hand: it grows with the temperature of
---  the coolant, and is full where that is not known.
+--  The speed of the fan, written by hand: it grows with the temperature of the
+--  coolant, and is full where the temperature is not known.
 
 package body J1939_Node.Fan_Controller.Activities
   with SPARK_Mode
@@ -15,7 +15,7 @@ is
    --  The fan begins above Warm and has its full speed from Hot on.
 
    Step : constant Fan_Speed := 10;
-   --  The speed changes by so much at most in one execution.
+   --  The largest change of the speed in one execution.
 
    Rpm_Of_Speed : constant := 24;
    --  3,000 rpm at full speed, in 0.5 rpm.

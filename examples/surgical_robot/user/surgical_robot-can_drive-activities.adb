@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The drive over CAN: what it is ordered, as set-points.
+--  The drive over CAN: its orders, as set points.
 
 package body Surgical_Robot.Can_Drive.Activities
 with SPARK_Mode

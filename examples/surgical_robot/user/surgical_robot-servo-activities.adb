@@ -17,8 +17,7 @@ is
      (Goal, Position : Angle; Velocity : Speed; Yield : Ravenchart.Number)
       return Current
    with Global => null, Pre => Yield in -250 .. 250;
-   --  The current that drives a joint to a goal that has given way by Yield,
-   --  in mrad.
+   --  The current that drives a joint to a goal that yields by Yield, in mrad.
 
    procedure Take_Orders
      (Motion_Request : Servo.Motion_Requests.Request;

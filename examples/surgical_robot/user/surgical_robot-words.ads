@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Numbers as registers hold them.
+--  Numbers in the format of registers.
 
 with Interfaces;
 
@@ -14,7 +14,7 @@ is
    subtype Word is Interfaces.Unsigned_32;
 
    subtype Long is Ravenchart.Number range -2**31 .. 2**31 - 1;
-   --  What 32 bits hold in two's complement.
+   --  The values of 32 bits in two's complement.
 
    function Signed (Value : Word) return Long
    is (if Value < 2**31
@@ -35,13 +35,13 @@ is
      Global => null,
      Pre    => Limit in 0 .. 2**31,
      Post   => Clamped'Result in -Limit .. Limit;
-   --  Value, or the end of -Limit .. Limit that is next to it.
+   --  Value, or the nearer end of -Limit .. Limit.
 
    Middle : constant := 2_048;
-   --  Of a digital-to-analogue converter: no current.
+   --  The value of a digital-to-analogue converter for no current.
 
    function Converted (Value : Current) return Word
    is (Word (Middle + Ravenchart.Number (Value)))
    with Global => null;
-   --  What such a converter makes a current of, in mA.
+   --  The value of such a converter for a current, in mA.
 end Surgical_Robot.Words;

@@ -100,20 +100,20 @@ def emit_authentication(system: System, header: str) -> list[Unit]:
     pure = (Aspect("Global", NOTHING),)
     mac, last = _mac_spec(), _last_spec()
     items: tuple[Decl, ...] = (
-        Comment("The keys of the model by name: no key stands in generated code."),
+        Comment("The keys of the model by name; generated code holds no key."),
         EnumType(KEYS, tuple(keys.values())),
         EnumType(MESSAGES, tuple(_literal(message) for message, _ in found)),
         Subprogram(mac.name, mac.params, mac.result, aspects=pure),
         Comment(
-            "The MAC of the first Item.Length bytes under a key, or that there is none. Called by "
-            "all tasks that send or receive, within `mac_wcet`; the same arguments give the same "
-            "MAC."
+            "The MAC of the first Item.Length bytes under Key, if there is one. All tasks that "
+            "send or receive call Mac, which returns within `mac_wcet`. The same arguments give "
+            "the same MAC."
         ),
         Subprogram(last.name, last.params, last.result, aspects=pure),
         Comment(
-            "Called once for each message. Where this node sends it: no less than any freshness "
-            "value that was ever sent with its key and data identifier. Where it receives it: no "
-            "frame with this value or a smaller one is used."
+            "The last freshness value of a message; called once for each. Of a message that this "
+            "node sends: no less than any value ever sent with the same key and data identifier. "
+            "Of one that it receives: no frame with this value or a smaller one is used."
         ),
     )
     return [Unit(header, (AUTHENTICATION,), Package(_unit(system), items, (SPARK,)))]
@@ -177,7 +177,7 @@ def _setting_of(message: Message) -> list[Decl]:
     }
     made = Aggregate(tuple(Arg(name, number(value)) for name, value in columns.items()))
     return [
-        Comment(f"[{message.name}] its authentication"),
+        Comment(f"[{message.name}] the authentication of this message"),
         Object(_setting(message), SETTING.name, made, constant=True),
     ]
 

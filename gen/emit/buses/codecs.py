@@ -132,7 +132,7 @@ def emit_codecs(system: System, header: str) -> tuple[Unit, ...]:
         body.append(Package(codec.name, tuple(codec.body()), is_body=True))
     spec.append(FRAME_ROW)
     for message in system.messages:
-        spec += [Comment(f"[{message.name}] the frame that carries it"), frame_row(message)]
+        spec += [Comment(f"[{message.name}] the frame of this message"), frame_row(message)]
     name = ref(ada_case(system.name), "Codecs")
     withs: tuple[DottedName, ...] = (ref("Interfaces"), ANY, LAYOUTS)
     lemmas: tuple[DottedName, ...] = ()
@@ -228,19 +228,19 @@ class _Codec:
                 self.frame_type,
                 aspects=(Aspect("Post", all_of(*self._carries(), *self._gaps())),),
             ),
-            Comment("The frame's raw values are the table's, and bits of no signal are 0."),
+            Comment("The raw values stand where the table says; bits of no signal are 0."),
             Subprogram(
                 "Unpack",
                 (frame, Param("Item", "out", self.ada_type), Param("Valid", "out", "Boolean")),
                 aspects=(*self._by_reference(), Aspect("Post", self._unpacked())),
             ),
-            Comment("Valid when all bits stand for values."),
+            Comment("Valid is True when all bits stand for values."),
             Subprogram(
                 "Lemma_Survives",
                 (Param("Item", "in", self.ada_type),),
                 aspects=(Aspect("Ghost"),),
             ),
-            Comment("What is packed is what is unpacked."),
+            Comment("Unpack returns the value that Pack was given."),
         ]
         return items
 

@@ -136,7 +136,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
             "Boolean",
             expression=CaseExpr(ref("Format"), tuple(wanted)),
         ),
-        Comment(f"[{bus.name}] the identifiers that this node receives"),
+        Comment(f"[{bus.name}] whether this node receives frames with the identifier Id"),
         GenericInstance(
             "Controller",
             "Ravenchart.Can.Controllers",
@@ -155,7 +155,10 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     items += controller_checks(bus)
     if received:
         items.append(
-            Comment(f"[{bus.name}] all that is received passes, and its frame holds its signals")
+            Comment(
+                f"[{bus.name}] the filter accepts each received message, whose frame holds all "
+                "its signals"
+            )
         )
         plain = [m for m in received if is_plain(m)]
         items += [Pragma("Assert", (is_received(m, codec_name(m)),)) for m in plain]
@@ -172,7 +175,9 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
     for message in filter(is_plain, sent):
         items.append(_frame_spec(system, bus, message))
         items.append(
-            Comment(f"[{message.name}] its frame by the layout table; none of its bits is cut off.")
+            Comment(
+                f"[{message.name}] the frame by the layout table; no bit of the data is cut off."
+            )
         )
         items.append(_send_spec(system, message))
         items.append(Comment(_task_of_sending(message)))
@@ -366,10 +371,10 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     slot = bus_row(system, bus, Work.BUS_RECEIVE)
     spec: tuple[Decl, ...] = (
         Subprogram("Wait"),
-        Comment(f"[{bus.name}.receive.release] suspend until a frame is there."),
+        Comment(f"[{bus.name}.receive.release] suspend until a frame has arrived."),
         UseType(ELEMENT_ID),
         run_spec("Receive", slot),
-        Comment(f"[{bus.name}.receive] decode it and hand it to its receivers."),
+        Comment(f"[{bus.name}.receive] decode a frame and hand its value to the receivers."),
     )
     rows: list[tuple[Expr, tuple[Stmt, ...]]] = []
     declarations: list[Decl] = [

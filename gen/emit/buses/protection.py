@@ -53,7 +53,7 @@ def setting_of(message: Message) -> list[Decl]:
     made = record(columns)
     return [
         Object(_setting(message), ref(PROTECTION, "Setting"), made, constant=True),
-        Comment(f"[{message.name}] its protection from end to end"),
+        Comment(f"[{message.name}] the end-to-end protection of this message"),
     ]
 
 

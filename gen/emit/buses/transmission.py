@@ -51,7 +51,7 @@ def mode_of(message: Message) -> list[Decl]:
     made = record(columns)
     return [
         Object(_setting(message), ref(TRANSMISSIONS, "Setting"), made, constant=True),
-        Comment(f"[{message.name}] its transmission mode, in executions of the row that sends it"),
+        Comment(f"[{message.name}] the transmission mode; times in executions of the sending row"),
     ]
 
 
@@ -61,7 +61,7 @@ def transmit_spec(message: Message) -> list[Decl]:
         return []
     return [
         Subprogram(transmit_name(message)),
-        Comment(f"[{message.name}] at the end of each execution of the row; never blocks."),
+        Comment(f"[{message.name}] called at the end of each execution of the row; never blocks."),
     ]
 
 

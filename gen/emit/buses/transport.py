@@ -132,14 +132,14 @@ def sender_spec(system: System, message: Message, transport: Transport) -> list[
     }
     made = record(columns)
     return [
-        Comment(f"[{message.name}] its segments; times in executions of the row that sends it"),
+        Comment(f"[{message.name}] the segmentation; times in executions of the sending row"),
         Object(_own("Segmentation", name), ref(SENDERS, "Setting"), made, constant=True),
         Subprogram(f"Send_{name}", (Param("Item", "in", type_name(system, message.type)),)),
         Comment(f"[{message.name}] keep the value until a transfer can begin."),
         Subprogram(f"Transmit_{name}"),
-        Comment(f"[{message.name}] at the end of each execution of the row; never blocks."),
+        Comment(f"[{message.name}] called at the end of each execution of the row; never blocks."),
         Subprogram(f"Note_Flow_{name}", (Param("Found", "in", ref(ISO_TP, "Segment")),)),
-        Comment(f"[{message.name}] by the reception: flow control has come."),
+        Comment(f"[{message.name}] called by the reception when flow control arrives."),
     ]
 
 
@@ -255,9 +255,9 @@ def receiver_spec(system: System, message: Message, transport: Transport) -> lis
             REASSEMBLIES,
             arguments(Segments=made, Ceiling=priority(ceiling)),
         ),
-        Comment(f"[{message.name}] its segments"),
+        Comment(f"[{message.name}] the reassembly of the segments"),
         Subprogram(f"Answer_{name}"),
-        Comment(f"[{transport.flow}] at the end of each execution of the port region."),
+        Comment(f"[{transport.flow}] called at the end of each execution of the port region."),
     ]
 
 

@@ -38,8 +38,8 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
         UseType(ELEMENT_ID),
         run_spec("Watch", slot),
         Comment(
-            f"[{bus.name}.watch] look at the controller, and raise the events of what has "
-            "happened to it since the last look."
+            f"[{bus.name}.watch] look at the controller, and raise the events of its faults "
+            "since the last look."
         ),
     )
     context = {NOTICES}
@@ -60,7 +60,7 @@ def emit_watch(system: System, bus: Bus, header: str) -> list[Unit]:
 
 def _body(system: System, bus: Bus, slot: Slot) -> tuple[Decl, ...]:
     items: list[Decl] = [
-        Comment(f"[{bus.name}.watch] the controller at the last look"),
+        Comment(f"[{bus.name}.watch] the state of the controller at the last look"),
         Object("Seen", ref(NOTICES, "Fault_Log")),
     ]
     looks = bus.recovery_looks

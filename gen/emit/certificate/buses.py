@@ -31,6 +31,7 @@ from ravenchart.gen.model.system import System
 from .frames import explained, length_terms, rate_terms, span
 from .interference import Interferer, Ladder, W, demand_within
 from .terms import (
+    IN_WINDOWS,
     LATE,
     ONE,
     RESPONSE,
@@ -67,14 +68,17 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
     """The numbers of a bus and its messages."""
     own = ada_case(bus.name)
     words = (
-        f"[{bus.name}] bits in a second, and one bit in nanoseconds, rounded up. A message waits "
-        "for the longest frame that goes behind it and has begun, and for those that go before "
-        f"it. Of a message, {explained(bus)}"
+        f"[{bus.name}] Bit_Rate: bits in a second. Bit: one bit in nanoseconds, rounded up. A "
+        "message waits for the longest frame that goes behind it and has begun, and for the frames "
+        f"that go before it.\nOf a message, {explained(bus)}"
     )
     messages = _of(system, bus)
     items: list[Decl] = [Comment(words), *rate_terms(bus, messages)]
     if bus.errors is not None:
-        hit = f"[{bus.name}] errors: so many at once, one more every T, bits lost to each"
+        hit = (
+            f"[{bus.name}] Error_Burst: errors at once. Error_T: the distance of further errors. "
+            "Error_Bits: bits lost to each error."
+        )
         items += [
             Comment(hit),
             stated(f"{own}_Error_Burst", bus.errors.burst),
@@ -230,7 +234,9 @@ def _waits(system: System, bus: Bus, order: list[Message], claims: Claims) -> li
     ladder = Ladder(tuple(steps), "Queued")
     lost = _Level(bus, order[0], order, [], ladder).lost(busiest)
     items: list[Decl] = [
-        Comment(f"[{bus.name}] how long it is ever busy, and who waits no longer in a queue"),
+        Comment(
+            f"[{bus.name}] the longest busy period, and the messages that wait no longer in a queue"
+        ),
         *ladder.functions(),
         stated(f"{line}_Busiest", claims.busiest[bus.name]),
         named_number(f"{line}_Busiest_Needs", plus(*ladder.whole(own[-1], busiest), *lost)),
@@ -259,7 +265,7 @@ def _of_message(level: _Level, claims: Claims) -> list[Decl]:
     busy = ref(f"{own}_Busy")
     demand = plus(level.blocking, *level.ladder.whole(own, busy), *level.lost(busy))
     jitter, response = ref(f"{own}_J"), ref(f"{own}_R")
-    items: list[Decl] = [Comment(f"[{message.element}] what delays it")]
+    items: list[Decl] = [Comment(f"[{message.element}] {IN_WINDOWS}")]
     items += _busy(own, message.element, claim, demand)
     sent = ref(f"{own}_C")
     last = OperatorChain("-", (response, jitter, sent)) if len(claim.windows) == 1 else None
@@ -336,7 +342,7 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
     first = claims.turns.get(wanted[0].element, ResponseClaim())
     whole = plus(*ladder.whole(steps[0].name, busy))
     items: list[Decl] = [
-        Comment(f"[{processor.name}] how long it is ever busy with what it receives"),
+        Comment(f"[{processor.name}] the longest busy period of the reception"),
         *ladder.functions(),
         *_busy(line, processor.name, first, whole),
     ]
@@ -349,7 +355,10 @@ def _turns(system: System, bus: Bus, node: Node, claims: Claims, handed: Set[str
             earlier = [times(number(instance), separation)] if instance else []
             return plus(*earlier, *ladder.others(own, plus(window, ONE)))
 
-        words = f"[{label}] its turn in {processor.name}, and when handed over"
+        words = (
+            f"[{label}] Turn: the time until its turn in {processor.name} ends. Handed: the time "
+            "until it is handed over."
+        )
         items.append(Comment(words))
         if one.several:
             items.append(named_number(f"{own}_T", ref(f"{name_of(one.message.element)}_T")))

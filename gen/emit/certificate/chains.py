@@ -33,7 +33,7 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
     """
     own = f"Chain_{ada_case(chain.name)}"
     hops = hops_of(system, chain)
-    words = [f"[{chain.name}] from end to end."]
+    words = [f"[{chain.name}] end-to-end latency."]
     reaction: list[Expr] = []
     age: list[Expr] = []
     items: list[Decl] = []
@@ -47,7 +47,7 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
                 words.append(f"{hop.element} follows some jobs of {before.element} only.")
                 reaction.append(OperatorChain("-", (_period(system, hop), _period(system, before))))
             if hop.kind == "transfer":
-                words.append(f"{hop.element} waits for the value before it.")
+                words.append(f"{hop.element} waits for the previous value.")
                 reaction.append(OperatorChain("-", (_longest(system, hop), _period(system, hop))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
@@ -56,7 +56,7 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
                 age.append(_longest(system, _sender(hops[:place])))
             queued = False
         elif hop.how == "woken" and before is not None:
-            words.append(f"A queue releases {hop.element}: a value waits for that response.")
+            words.append(f"A queue releases {hop.element}; a value waits for its response time.")
             separation, more = _period(system, hop), hop.at_once - 1
             filled = times(number(hop.at_once), separation), _period(system, before)
             items.append(refuse(*filled, f"chain {chain.name}", "can fill a queue"))
@@ -64,7 +64,7 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             reaction += delays
             age += delays
         elif before is not None:
-            words.append(f"{hop.element} takes one of a queue: Wait_{place + 1}.")
+            words.append(f"{hop.element} reads a queue; Wait_{place + 1} is the wait in it.")
             wait = f"{own}_Wait_{place + 1}"
             items += _queue(system, wait, (before, hop), next(waits, 0), chain.name)
             reaction.append(ref(wait))

@@ -34,13 +34,14 @@ besides the data."""
 def explained(bus: Bus) -> str:
     """The meaning of the numbers of a message's length."""
     text = (
-        "Stuffed: bits that stuffing can lengthen by a quarter; Bits: the longest frame, with 10 "
-        "bits that are not stuffed and 3 to the next frame; Time_Of: how long that takes."
+        "Stuffed: bits that stuffing can lengthen by a quarter. Bits: the longest frame, with 10 "
+        "bits that are not stuffed and 3 to the next frame. Time_Of: the time of that frame."
     )
     if bus.takes_fd:
         text += (
-            " Of a CAN FD frame, Head: bits up to the switch of the bit rate; Early: stuff bits "
-            "there; Body: the longest part from there to the end of the CRC; Bits: the rest."
+            "\nOf a CAN FD frame, Head: bits up to the switch of the bit rate. Early: stuff bits "
+            "in Head. Body: the longest part from the switch to the end of the CRC. Bits: all "
+            "other bits."
         )
     return text
 

@@ -49,12 +49,14 @@ def offset_claims(system: System, task: Task, claim: ResponseClaim) -> list[Decl
     bound, jitter, period, deadline = (ref(f"{own}_{letter}") for letter in "RJTD")
     items: list[Decl] = [
         Comment(
-            f"[{label}] is late with other offsets, by R, and not with its own. At are the "
-            "instants of a Cycle at which a processor of its priority or a higher one is "
-            "released, as late as can be, less than Reach before its own job is due. Begun "
-            "at any other, that job takes Reach less than R, or even less. Of these processors "
-            "the releases that are due from At - J on, before At + W, delay it. Missed are "
-            "instants between Since, that of the one before or its Reach, and At."
+            f"[{label}] meets its deadline with its offset; R, for any offsets, is too long.\n"
+            "At: an instant at which a processor of its priority or a higher one is released, as "
+            "late as possible, less than Reach before its own job is due. All repeat with Cycle. "
+            "A job whose busy period begins at no such instant has a response time of at most "
+            "R - Reach. Releases of these processors that are due from At - J on and before "
+            "At + W delay the job.\n"
+            "Since: the instant before At, or Reach before the job is due. No instant lies "
+            "between Since and At."
         ),
         stated(f"{own}_Reach", reach),
         refuse(OperatorChain("-", (bound, jitter, ref(f"{own}_Reach"))), deadline, label, LATE),

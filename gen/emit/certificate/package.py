@@ -52,6 +52,7 @@ from .offsets import offset_claims
 from .protection import age_limited_ports, protection_claims
 from .tables import driver_levels, order, table_terms
 from .terms import (
+    IN_WINDOWS,
     LATE,
     OVERLAP,
     RESPONSE,
@@ -68,30 +69,41 @@ from .terms import (
 from .transport import transfer_claims, transferred
 
 LETTERS = (
-    "Times in nanoseconds. T period or least separation, D deadline, J longest time from the "
-    "event to the release, C longest execution (with context switches) or transmission, "
-    "B blocking, R claimed response from the event, W claimed time from the start of a busy "
-    "period. X_Up (W): what X and all before it ask for within W; X_Rest (W): what X and those "
-    "behind it at its level do. Needs: the demand within W; if it is more than W, W is too short, "
-    "if it is less, a term is missing."
+    "Times are in nanoseconds.\n"
+    "T: period or least separation.\n"
+    "D: deadline.\n"
+    "J: longest time from the event to the release.\n"
+    "C: longest execution (with context switches) or transmission.\n"
+    "B: blocking.\n"
+    "R: claimed response time, from the event.\n"
+    "W: claimed time from the start of a busy period.\n"
+    "X_Up (W): demand within W of X and all before it.\n"
+    "X_Rest (W): demand within W of X and those behind it at its level.\n"
+    "Needs: the demand within W. If the demand is more than W, W is too short. If the demand is "
+    "less, a term is missing.\n"
+)
+
+CLAIMED = (
+    "The claimed response times: the bound of each element, and the jitter of those that it "
+    "releases."
 )
 
 
 def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     """The certificate of a system; its claims are those of the analysis."""
     items: list[Decl] = [
-        Comment("SHA-256 of the model: the program and its trace carry it."),
+        Comment("SHA-256 of the model; the program writes it into the trace."),
         Object("Model_Digest", "String", StringLiteral(system.digest), constant=True),
         UsePackage(UNIT),
         Comment(LETTERS),
     ]
     elements = [task.element for task in system.tasks] + [m.element for m in system.frames]
-    items.append(Comment("The claimed responses: each another's lateness, or its own bound."))
+    items.append(Comment(CLAIMED))
     items += [stated(f"{name_of(one)}_R", claims.of(one).response) for one in elements]
     for node in system.nodes:
         own = ada_case(node.name)
         items += [
-            Comment(f"[{node.name}] what the platform takes, each at its longest"),
+            Comment(f"[{node.name}] the times of the platform, each the longest"),
             stated(f"{own}_Context_Switch", node.context_switch),
             stated(f"{own}_Critical_Section", node.critical_section),
         ]
@@ -179,8 +191,9 @@ def _silences(system: System, node: Node) -> list[Decl]:
         return []
     own, task = ada_case(node.name), name_of(f"{node.name}.{SUPERVISOR}")
     text = (
-        f"[{node.name}] a release that has not completed L after it was due makes its processor "
-        "silent; the supervisor has reported that S after the release was due"
+        f"[{node.name}] L: a processor is silent when a release has not completed this long after "
+        "it was due. S: the supervisor has reported the silence this long after the release was "
+        "due."
     )
     items: list[Decl] = [Comment(text), stated(f"{own}_Margin", node.supervision.margin)]
     for processor in system.processors:
@@ -222,17 +235,17 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
     if task.released_by is not None:
         what = f"the driver, released by {task.released_by}"
     elif task.sporadic:
-        what = "released by arrivals, no closer than T; it may wait for T to be over as well"
+        what = "released by arrivals, at least T apart; an arrival may also wait until T is over"
     else:
         what = "released every T"
         if has_offset(system, task):
             what += ", first O after the epoch of its node"
     text = f"[{task.element}] {what}."
-    text += f" B: {held[1]} in {held[0].element}." if held else " Nothing blocks it."
+    text += f" B: {held[1]} in {held[0].element}." if held else " B: no blocking."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if rare:
         every = ", ".join(f"C_{n}: rows of one release in {n}" for n in rare)
-        text += f" C: what every release executes; {every}."
+        text += f" C: rows of every release; {every}."
     return text
 
 
@@ -257,7 +270,7 @@ def _claims(system: System, task: Task, claims: Claims, rows: Set[str]) -> list[
     own, label = name_of(task.element), task.element
     windows = claims.of(label).windows
     jitter, period, bound = (ref(f"{own}_{letter}") for letter in "JTR")
-    items: list[Decl] = [Comment(f"[{label}] what delays it")]
+    items: list[Decl] = [Comment(f"[{label}] {IN_WINDOWS}")]
     last: Expr = ref(f"{own}_W")
     ends: list[Expr] = []
     for job, window in enumerate(windows):
@@ -299,14 +312,14 @@ def _row(system: System, task: Task, place: int, claims: Claims) -> list[Decl]:
     done, bound = name_of(row), claims.rows.get(row, 0)
     if place == len(task.slots) and bound == claims.of(task.element).response:
         return [
-            Comment(f"[{row}] the last row: done when {task.element} completes"),
+            Comment(f"[{row}] the last row, done when {task.element} completes"),
             named_number(f"{done}_Done", ref(f"{own}_R")),
         ]
     executed = [ref(f"{name_of(slot.element)}_Wcet") for slot in task.slots[:place]]
     needed = plus(switches(task), *executed)
     window = ref(f"{done}_W")
     return [
-        Comment(f"[{row}] done, from the event of its processor"),
+        Comment(f"[{row}] Done: the time from the event of its processor until it is done"),
         stated(f"{done}_Done", bound),
         named_number(f"{done}_W", OperatorChain("-", (ref(f"{done}_Done"), ref(f"{own}_J")))),
         named_number(f"{done}_Needs", demand(system, task, window, needed)),

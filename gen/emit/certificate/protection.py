@@ -30,8 +30,9 @@ HOUR = 3_600 * 10**9
 
 RESIDUAL = (
     "Few: 100**Data_Bits times the probability that no more bits are wrong than the CRC always "
-    "finds, each bit with probability 1/100. Residual: the probability that corruption of a frame "
-    "is not found, in 10**-18; Per_Hour: of the frames of an hour, in 10**-9."
+    "finds, with each bit wrong with probability 1/100.\n"
+    "Residual: the probability that corruption of a frame is not found, in units of 10**-18.\n"
+    "Per_Hour: the same for all frames of an hour, in units of 10**-9."
 )
 
 
@@ -76,7 +77,7 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
         patterns.append(times(number(comb(8 * message.length, wrong)), sound))
     missed = OperatorChain("-", (whole, few))
     return [
-        Comment(f"[{message.element}] what its {own.name} finds"),
+        Comment(f"[{message.element}] the residual error of {own.name}"),
         named_number(bits, times(number(8), ref(f"{element}_Length"))),
         named_number(few, plus(*patterns)),
         stated(right, claimed),
@@ -105,8 +106,9 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
         ref(f"{name_of(processor.name)}_R"),
     )
     words = (
-        f"[{end}] Looks: the distance at which the age of its value is looked at; Stale: the time "
-        f"from when {message.name} was last due in good order until the port is known to be stale."
+        f"[{end}] Looks: the period at which the age of its value is checked. Stale: the time "
+        f"from when the last usable frame of {message.name} was due until the port is known to be "
+        "stale."
     )
     return [
         Comment(words),

@@ -29,7 +29,7 @@ def driver_levels(system: System) -> list[Decl]:
     found = {t.driver_of: t.priority for t in system.tasks if t.driver_of is not None}
     items: list[Decl] = []
     for bus, level in found.items():
-        items.append(Comment(f"[{bus}] the priority of its driver, whatever that works at"))
+        items.append(Comment(f"[{bus}] the priority of the driver in all its work"))
         items.append(named_number(f"{name_of(driver_element(bus))}_Priority", priority(level)))
     return items
 

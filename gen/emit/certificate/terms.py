@@ -34,6 +34,9 @@ OVERLAP = "can be released before it completes"
 RESPONSE = "response time"
 """The subject of most claims."""
 
+IN_WINDOWS = "each claimed window, and the demand within it"
+"""The comment above the claims about a task or a message."""
+
 LONG = 69
 """A message of more columns is broken behind the name of its element."""
 

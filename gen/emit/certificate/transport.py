@@ -48,10 +48,10 @@ def transfer_claims(system: System, claims: Claims) -> list[Decl]:
         last: list[Expr] = [times(number(transport.rounds), trip)]
         last += [times(number(further), apart)] if further else []
         words = f"[{label}] a value of {transport.length} bytes travels in {transport.segments} "
-        words += f"segments, with flow control {transport.rounds} times. Row: the period of what "
-        words += "sends. Round_Trip: from a segment behind which flow control is sent to the next "
-        words += "one. Transfer: from the first release until it is handed over. Renewal: from "
-        words += "one value to the next."
+        words += f"segments, with flow control {transport.rounds} times. Row: the period of the "
+        words += "row that sends. Round_Trip: the time from a segment that flow control follows to "
+        words += "the next segment. Transfer: the time from the first release until the value is "
+        words += "handed over. Renewal: the time from one value to the next."
         items += [
             Comment(words),
             stated(f"{own}_Row", transport.row),

@@ -38,18 +38,18 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.compound import PASSED, Firing, FiringKind
-from ravenchart.gen.emit.language.places import conjuncts
+from ravenchart.gen.emit.language.configurations import conjuncts
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
-from .history import restored_functions, restored_place
-from .lanes import LIST, declared_lanes, firing_list
+from .history import restored_configuration, restored_functions
 from .lasting import declared_lasting
 from .operations import operations
 from .records import chart_types, memory, records
 from .safety import Safety
 from .selection import is_selected, is_selection
+from .several_transitions import LIST, declared_choice, firing_list
 from .shape import START, RegionShape
 from .stepping import body_of
 
@@ -83,7 +83,7 @@ def _spec(shape: RegionShape) -> tuple[Decl, ...]:
 # --- The chart as declared ---------------------------------------------------
 
 
-MANY_LANES = 4
+MANY_REGIONS = 4
 """In charts with more busy regions a step calls In_Source. Inlined there, once for each region,
 the function made the program grow with the square of the chart."""
 INLINE, CALLED = (Aspect("Inline_Always"),), (Aspect("No_Inline"),)
@@ -92,37 +92,36 @@ INLINE, CALLED = (Aspect("Inline_Always"),), (Aspect("No_Inline"),)
 
 def _drawn(shape: RegionShape) -> list[Decl]:
     """The chart as it is drawn: from where to where each transition leads."""
-    place = Param(shape.place, "in", shape.place_type)
     sources = tuple((f.literal, shape.in_sources(f)) for f in shape.firings)
-    start = shape.configuration(shape.after(shape.start), shape.place)
+    start = shape.configuration(shape.after(shape.start), shape.configuration_name)
     targets = tuple((f.literal, _target(shape, f)) for f in shape.firings)
     return [
         Subprogram(
             "In_Source",
-            (Param("T", "in", "Transition"), place),
+            (Param("T", "in", "Transition"), shape.configuration_param),
             "Boolean",
-            aspects=CALLED if len(shape.busy_lanes) > MANY_LANES else INLINE,
+            aspects=CALLED if len(shape.busy_regions) > MANY_REGIONS else INLINE,
             expression=choice_of(ref("T"), sources or (("None", FALSE),)),
         ),
-        Comment("The source of each transition: an active leaf, or an active state around it."),
+        Comment("Whether the source of T is active; of a join, whether all its sources are."),
         *memory(shape),
         *restored_functions(shape),
         Subprogram(
             "Target",
             (Param("T", "in", "Firing"), *shape.target_params()),
-            shape.place_type,
+            shape.configuration_type,
             expression=choice_of(ref("T"), ((START, start), *(targets or (("None", start),)))),
         ),
         Comment(
-            "The leaf that each transition leads to; that of a composite is its default."
+            "The leaf that T leads to; for a composite state, its default leaf."
             if shape.single
-            else "The leaves that each transition leads to; those of a composite are its defaults."
+            else "The leaves that T leads to; for a composite state, its default leaves."
         ),
     ]
 
 
 def _declared(shape: RegionShape) -> list[Decl]:
-    in_source = call("In_Source", ref("T"), ref("Self", shape.place))
+    in_source = call("In_Source", ref("T"), ref("Self", shape.configuration_name))
     lines = tuple((f.literal, shape.enabled_when[f.literal]) for f in shape.firings)
     items: list[Decl] = [
         Subprogram(
@@ -132,40 +131,42 @@ def _declared(shape: RegionShape) -> list[Decl]:
             aspects=INLINE,
             expression=both(in_source, CaseExpr(ref("T"), lines or (("None", FALSE),))),
         ),
-        Comment("The trigger and the guard of each transition."),
+        Comment(
+            "Whether T is enabled: its source is active, Now triggers it, and its guard holds."
+        ),
     ]
     items += declared_lasting(shape)
     items += _selections(shape)
     items += _passing(shape)
     if shape.listed:
-        items += declared_lanes(shape)
+        items += declared_choice(shape)
     return items
 
 
 def _target(shape: RegionShape, firing: Firing) -> Expr:
     if firing.kind is FiringKind.RESTORE:
-        return restored_place(shape, firing.sources[0])
+        return restored_configuration(shape, firing.sources[0])
     if firing.kind in (FiringKind.INTERNAL, FiringKind.DEFERRAL):
-        return ref(shape.place)
-    return shape.configuration(shape.leads_to(firing), shape.place)
+        return ref(shape.configuration_name)
+    return shape.configuration(shape.leads_to(firing), shape.configuration_name)
 
 
 def _selections(shape: RegionShape) -> list[Decl]:
-    first = "The first transition that is enabled, or None when none is."
+    first = "Whether Chosen is the first enabled transition{}, or None when none is enabled."
     if shape.single:
-        return [is_selection(shape), Comment(first)]
+        return [is_selection(shape), Comment(first.format(""))]
     lines: list[Expr] = []
-    for lane in shape.busy_lanes:
-        name = shape.lane_name(lane)
-        right: Expr = is_selected(shape, ref("C", name), lane)
-        if inner := shape.inner_lanes(lane):
-            idle = [equal(ref("C", shape.lane_name(n)), ref("None")) for n in inner]
+    for region in shape.busy_regions:
+        name = shape.label(region)
+        right: Expr = is_selected(shape, ref("C", name), region)
+        if inner := shape.inner_regions(region):
+            idle = [equal(ref("C", shape.label(r)), ref("None")) for r in inner]
             none = equal(ref("C", name), ref("None"))
             right = IfExpr(((chain("and then", idle), right),), none)
         lines.append(right)
     items: list[Decl] = [
         is_selection(shape),
-        Comment(first),
+        Comment(first.format(" from First to Last")),
         Subprogram(
             "Is_Choice",
             (Param("C", "in", "Choice"), *shape.situation),
@@ -173,7 +174,10 @@ def _selections(shape: RegionShape) -> list[Decl]:
             aspects=(Aspect("Ghost"),),
             expression=both(*conjuncts(lines)),
         ),
-        Comment("Each lane's first; none where a lane inside it has one."),
+        Comment(
+            "Whether C has the first enabled transition of each region, and None where a region "
+            "inside it has one."
+        ),
     ]
     for state in shape.left_states:
         names = [f.literal for f in shape.firings if state in shape.compounds.left(f)]
@@ -184,7 +188,10 @@ def _selections(shape: RegionShape) -> list[Decl]:
                 "Boolean",
                 expression=one_of(ref("T"), names),
             ),
-            Comment(f"Does it leave {state} from inside? Then it fires alone there."),
+            Comment(
+                f"Whether T leaves {state} from inside. The step then takes no other transition "
+                f"in {state}."
+            ),
         ]
     for state in shape.watched:
         left = call(f"Leaves_{ada_case(state)}", Indexed("Fired.Items", ref("I")))
@@ -202,17 +209,21 @@ def _selections(shape: RegionShape) -> list[Decl]:
 def _passing(shape: RegionShape) -> list[Decl]:
     if not shape.passes:
         return []
-    place = Param(shape.place, "in", shape.place_type)
     ranks: dict[int, list[Expr]] = {}
     for pseudo in shape.region.pseudostates:
         if pseudo.kind in PASSED:
             ranks.setdefault(shape.rank(pseudo.name), []).append(
-                shape.in_state(shape.place, pseudo.name)
+                shape.in_state(shape.configuration_name, pseudo.name)
             )
     branches = tuple(
         (chain("or else", ranks[rank]), number(rank)) for rank in sorted(ranks, reverse=True)
     )
     return [
-        Subprogram("Segments_Left", (place,), "Natural", expression=IfExpr(branches, number(0))),
-        Comment("How many segments follow at most; none but in a choice or history."),
+        Subprogram(
+            "Segments_Left",
+            (shape.configuration_param,),
+            "Natural",
+            expression=IfExpr(branches, number(0)),
+        ),
+        Comment("The most segments that follow; 0 unless a choice or history is active."),
     ]

@@ -31,8 +31,8 @@ from ravenchart.gen.emit.ada.named import Named, ref
 from ravenchart.gen.emit.ada.naming import component_name
 from ravenchart.gen.emit.ada.statements import Comment, Stmt, do
 from ravenchart.gen.emit.language.compound import FiringKind
+from ravenchart.gen.emit.language.configurations import conjuncts
 from ravenchart.gen.emit.language.events import carries, name_of, null_event
-from ravenchart.gen.emit.language.places import conjuncts
 
 from .shape import ITEM, RegionShape
 
@@ -53,31 +53,40 @@ def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
     ``spans`` holds for each state the test whether a domain spans it.
     """
     names = "Event_Name" if carries(shape.component) else "Event"
+    configuration = shape.configuration_param
     deferred: list[tuple[Choice, Expr]] = []
     freed: list[tuple[Choice, Expr]] = []
     for event in kept_events(shape):
         states = [s.name for s in shape.region.states if event in s.defers]
-        inside = [shape.in_state(shape.place, s) for s in states]
-        left = [both(*conjuncts([spans[s], shape.in_state(shape.place, s)])) for s in states]
+        inside = [shape.in_state(configuration.name, s) for s in states]
+        left = [both(*conjuncts([spans[s], one])) for s, one in zip(states, inside, strict=True)]
         deferred.append((shape.event(event), chain("or else", inside)))
         freed.append((shape.event(event), chain("or else", left)))
     if len(deferred) < len(shape.component.events):
         deferred.append((OTHERS, FALSE))
         freed.append((OTHERS, FALSE))
-    name, place = Param("Name", "in", names), Param(shape.place, "in", shape.place_type)
-    domain = Param("D", "in", "Domain")
+    name, domain = Param("Name", "in", names), Param("D", "in", "Domain")
     deferrals = [f.literal for f in shape.firings if f.kind is FiringKind.DEFERRAL]
     chosen = Param("T", "in", "Selection")
     return [
         Subprogram(_NAME_OF, (ITEM,), names, expression=name_of(shape.component, ITEM.name)),
         Subprogram(
-            _IS_DEFERRED, (name, place), "Boolean", expression=CaseExpr(ref(name.name), deferred)
+            _IS_DEFERRED,
+            (name, configuration),
+            "Boolean",
+            expression=CaseExpr(ref(name.name), deferred),
         ),
-        Comment("Does an active state defer it?"),
+        Comment("Whether an active state defers the event."),
         Subprogram(
-            _IS_FREED, (name, domain, place), "Boolean", expression=CaseExpr(ref(name.name), freed)
+            _IS_FREED,
+            (name, domain, configuration),
+            "Boolean",
+            expression=CaseExpr(ref(name.name), freed),
         ),
-        Comment("Is a state exited that defers it? Then it is due, whatever is entered."),
+        Comment(
+            "Whether a state that defers the event is exited. The event is then due, whichever "
+            "states are entered."
+        ),
         Subprogram("Is_Deferral", (chosen,), "Boolean", expression=one_of(ref("T"), deferrals)),
         GenericInstance(
             "Deferrals",
@@ -88,7 +97,7 @@ def deferral_types(shape: RegionShape, spans: Mapping[str, Expr]) -> list[Decl]:
                 Event_Name=ref(component_name(shape.component), names),
                 Name_Of=ref(_NAME_OF),
                 Capacity=number(shape.region.deferral_depth),
-                Configuration=shape.place_type,
+                Configuration=shape.configuration_type,
                 Is_Deferred=ref(_IS_DEFERRED),
                 Domain=ref("Domain"),
                 Is_Freed=ref(_IS_FREED),
@@ -111,7 +120,7 @@ def is_changed(shape: RegionShape, chosen: Named, domain: Expr) -> Expr:
 
 
 def due(shape: RegionShape) -> Expr:
-    """The place of the event that was due first."""
+    """The position of the event that was due first."""
     return call("Deferrals.Due", old(KEPT), shape.held)
 
 

@@ -52,8 +52,7 @@ from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.compound import Effect, EntryStep, Firing, FiringKind
 from ravenchart.gen.emit.language.terms import certain_sends, emit_flow, flow_names
 from ravenchart.gen.language.terms import Flow
-from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import PseudoKind
+from ravenchart.gen.model.statechart import TOP, PseudoKind
 
 from .deferring import STORE
 from .history import Restoring
@@ -77,6 +76,12 @@ _WAS = "Was"
 """The region before a transition, for the procedures that take a few transitions each."""
 _BEGUN = "Is_Begun"
 _STILL = "Is_Still"
+_LASTING = "Whether Chosen has changed time-outs, memory and deferred events as declared."
+_READY = (
+    "Whether Chosen may be taken: Initial_Entry before the start, any other transition while its "
+    "source is active."
+)
+_TAKEN = "Whether the region is as declared after Chosen has been taken."
 _GHOST = (Aspect("Ghost"),)
 
 _Row = tuple[str, tuple[Stmt, ...]]
@@ -84,7 +89,7 @@ _Row = tuple[str, tuple[Stmt, ...]]
 
 
 def _between(claim: Stmt, effect: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
-    """An effect between the claim and the claim again, which fixes its place in the order."""
+    """An effect between the claim and the claim again, which fixes its position in the order."""
     return (claim, *effect, claim) if effect else ()
 
 
@@ -133,7 +138,7 @@ class Moves:
         declared = self._declared()
         constants = self._constants((*moving, *each, *declared))
         batches: list[Decl] = []
-        if len(each) * len(self.shape.lanes) > MANY:
+        if len(each) * len(self.shape.concurrent) > MANY:
             was = Object(_WAS, "Region", ref("Self"), constant=True, aspects=_GHOST)
             by_batch = [each[at : at + BATCH] for at in range(0, len(each), BATCH)]
             claims = self._claims_inside()
@@ -168,7 +173,7 @@ class Moves:
 
     def _declared(self) -> tuple[Stmt, ...]:
         """The configuration that the transition leads to, and what outlasts it."""
-        given = {self.shape.place: ref(BEFORE), "Past": ref("Past")}
+        given = {self.shape.configuration_name: ref(BEFORE), "Past": ref("Past")}
         return (
             Assign("Self.Started", TRUE),
             Assign(self.held, self._goal(given)),
@@ -183,7 +188,8 @@ class Moves:
     def _constants(self, named_in: object) -> list[Object]:
         """Constants of the region before the transition, as far as the statements name them."""
         named = {name.first for name in names_in(named_in)}
-        parts = ((BEFORE, self.shape.place_type, self.shape.place), ("Past", "Memory", "Past"))
+        configuration = self.shape.configuration_param
+        parts = ((BEFORE, configuration.type, configuration.name), ("Past", "Memory", "Past"))
         return [
             Object(name, of_type, ref("Self", part), constant=True)
             for name, of_type, part in parts
@@ -194,12 +200,11 @@ class Moves:
         """The precondition and the postcondition of Fire, each as a function of one name."""
         lasting: list[Decl] = []
         if self._lasts is not None:
-            told = "Are time-outs, memory and kept events after it as declared?"
-            lasting = [self._lasts, Comment(told)]
+            lasting = [self._lasts, Comment(_LASTING)]
         return [
-            *in_one_word(self._ready("Chosen"), "May it be fired? At first only the start may."),
+            *in_one_word(self._ready("Chosen"), _READY),
             *lasting,
-            *in_one_word(self._fired, "Is the region after it as declared?"),
+            *in_one_word(self._fired, _TAKEN),
         ]
 
     def _claims(self) -> tuple[Aspect, ...]:
@@ -237,7 +242,7 @@ class Moves:
     def _still(self) -> Subprogram:
         """The components of the region that such a procedure leaves as they were."""
         shape = self.shape
-        parts = ["Started", shape.place]
+        parts = ["Started", shape.configuration_name]
         parts += ["Past"] if shape.memories else []
         parts += ["Timers"] if shape.timers else []
         parts += ["Deferred"] if shape.deferring else []
@@ -341,7 +346,7 @@ class Moves:
     def _stop(self, firing: Firing) -> tuple[Stmt, ...]:
         """The region stops: nothing is active any more, and nothing more is left."""
         goal = self.shape.leads_to(firing)
-        return tuple(self.nodes.stopped(goal[self.shape.lanes[-1]]))
+        return tuple(self.nodes.stopped(goal[TOP]))
 
     def _effects(self, effects: tuple[Effect, ...]) -> tuple[Stmt, ...]:
         self._effects_given += [e.flow for e in effects]
@@ -371,8 +376,7 @@ class Moves:
         if split is None and len(states) < len(path):
             found += self.moving.exit(firing.sources[0])
         if outer and (outer[-1] == firing.sources[0] or self._splits(outer[-1], firing)):
-            nested = self.region.state(outer[-1]).regions
-            found += [self.moving.leave(Place(outer[-1], r.name)) for r in nested]
+            found += [self.moving.leave(r) for r in self.region.state(outer[-1]).region_ids]
         return (*found, *(s for v in reversed(outer) for s in self.moving.exit(v)))
 
     def _splits(self, vertex: str, firing: Firing) -> bool:

@@ -27,8 +27,7 @@ from ravenchart.gen.emit.ada.expressions import (
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Stmt, case_of
 from ravenchart.gen.emit.language.compound import PASSED, Enter, EntryStep
-from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import Lane, PseudoKind
+from ravenchart.gen.model.statechart import PseudoKind, RegionId
 
 from .shape import HistoryMemory, RegionShape
 
@@ -38,18 +37,19 @@ def _wanted(shape: RegionShape) -> list[tuple[HistoryMemory, bool]]:
     found: dict[tuple[HistoryMemory, bool], None] = {}
     for pseudo in shape.region.pseudostates:
         if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
-            own = shape.compounds.place(pseudo.name)
+            own = shape.compounds.region_of(pseudo.name)
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             found[(shape.memory(own), deep)] = None
             if deep:
-                below = (m for m in shape.memories if m.place != own)
+                below = (m for m in shape.memories if m.region != own)
                 found |= {
                     (m, True): None
                     for m in below
-                    if own in shape.compounds.places(m.place.owner or "")
+                    if own in shape.compounds.regions_around(m.region.owner or "")
                 }
     #  inner regions first: a function is declared before its use
-    return sorted(found, key=lambda k: -len(shape.compounds.places(k[0].place.owner or "")))
+    around = shape.compounds.regions_around
+    return sorted(found, key=lambda k: -len(around(k[0].region.owner or "")))
 
 
 def _function(memory: HistoryMemory, deep: bool) -> str:
@@ -61,8 +61,8 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     for memory, deep in _wanted(shape):
         rows = tuple(
-            (shape.literal(leaf), shape.literal(_again(shape, memory.place, leaf, deep)))
-            for leaf in shape.literals_in(memory.place)
+            (shape.literal(leaf), shape.literal(_again(shape, memory.region, leaf, deep)))
+            for leaf in shape.literals(memory.region)
         )
         result = shape.memory_type(memory)
         items += [
@@ -72,7 +72,7 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
                 result,
                 expression=IfExpr(
                     ((ref("Past", memory.known), choice_of(ref("Past", memory.last), rows)),),
-                    shape.literal(_default(shape, memory.place)),
+                    shape.literal(shape.region.default_of(memory.region)),
                 ),
             ),
             Comment(
@@ -82,80 +82,76 @@ def restored_functions(shape: RegionShape) -> list[Decl]:
     return items
 
 
-def _default(shape: RegionShape, place: Place) -> str:
-    return shape.region.default_of(place.owner, place.region)
-
-
-def _target(shape: RegionShape, place: Place, leaf: str, deep: bool) -> str | None:
+def _target(shape: RegionShape, region: RegionId, leaf: str, deep: bool) -> str | None:
     """The vertex that is entered for a remembered leaf; None: the region by default."""
     if shape.region.pseudostate(leaf) is not None:
         return None
     if not deep:
-        child = shape.compounds.below(place, leaf)[0]
+        child = shape.compounds.below(region, leaf)[0]
         return None if shape.region.state(child).final else child
     if not shape.region.state(leaf).final:
         return leaf
-    return None if shape.compounds.place(leaf) == place else shape.region.state(leaf).parent
+    return None if shape.compounds.region_of(leaf) == region else shape.region.state(leaf).parent
 
 
-def _again(shape: RegionShape, place: Place, leaf: str, deep: bool) -> str:
-    target = _target(shape, place, leaf, deep)
+def _again(shape: RegionShape, region: RegionId, leaf: str, deep: bool) -> str:
+    target = _target(shape, region, leaf, deep)
     if target is None:
-        return _default(shape, place)
-    regions = shape.region.state(target).regions
-    return shape.region.default_of(target, regions[0].name) if len(regions) == 1 else target
+        return shape.region.default_of(region)
+    return shape.region.default_leaf(target)
 
 
-def restored_place(shape: RegionShape, history: str) -> Expr:
+def restored_configuration(shape: RegionShape, history: str) -> Expr:
     """The configuration that a history restores."""
-    place = shape.compounds.place(history)
+    restored = shape.compounds.region_of(history)
     deep = shape.region.pseudostate(history).kind is PseudoKind.DEEP_HISTORY  # type: ignore[union-attr]
-    memory = shape.memory(place)
+    memory = shape.memory(restored)
     leaf = call(_function(memory, deep), ref("Past"))
     if shape.single:
         return leaf
-    own = shape.region.lane(history)
+    own = shape.region.concurrent_region(history)
     rows = []
-    for lane in reversed(shape.lanes):
+    for region in reversed(shape.concurrent):
         here: Expr | None = None
-        if lane == own:
+        if region == own:
             here = leaf
-        elif lane.owner is not None and place in shape.compounds.places(lane.owner):
-            here = _lane_again(shape, memory, lane, deep)
+        elif region.owner and restored in shape.compounds.regions_around(region.owner):
+            here = _leaf_again(shape, memory, region, deep)
         if here is not None:
-            rows.append(Arg(shape.lane_field(lane), here))
-    return Aggregate(tuple(rows), base=ref(shape.place) if len(rows) < len(shape.lanes) else None)
+            rows.append(Arg(shape.leaf_field(region), here))
+    whole = len(rows) == len(shape.concurrent)
+    return Aggregate(tuple(rows), base=None if whole else ref(shape.configuration_name))
 
 
-def _lane_again(shape: RegionShape, memory: HistoryMemory, lane: Lane, deep: bool) -> Expr:
+def _leaf_again(shape: RegionShape, memory: HistoryMemory, region: RegionId, deep: bool) -> Expr:
     """The leaf of a region below: remembered, by default, or as it was when not entered."""
-    assert lane.owner is not None
-    default = shape.literal(shape.default_leaf(lane))
-    kept = shape.at(shape.place, lane)
-    outer = shape.region.lane(lane.owner)
-    owner = shape.literal(lane.owner)
-    if outer == shape.lane_of(memory.place):
+    assert region.owner is not None
+    default = shape.literal(shape.region.default_of(region))
+    kept = shape.at(shape.configuration_name, region)
+    outer = shape.region.concurrent_region(region.owner)
+    owner = shape.literal(region.owner)
+    if outer == shape.concurrent_around(memory.region):
         entered = equal(call(_function(memory, deep), ref("Past")), owner)
-        remembered: Expr = _all_remembered(shape, memory, lane)
+        remembered: Expr = _all_remembered(shape, memory, region)
     else:
-        above = shape.memory(Place(outer.owner, outer.name)) if deep else None
-        entered = equal(_lane_again(shape, memory, outer, deep), owner)
+        above = shape.memory(outer) if deep else None
+        entered = equal(_leaf_again(shape, memory, outer, deep), owner)
         remembered = FALSE
         if above is not None:
-            remembered = _all_remembered(shape, memory, lane)
+            remembered = _all_remembered(shape, memory, region)
     if not deep:
         return IfExpr(((entered, default),), kept)
-    own = shape.memory(Place(lane.owner, lane.name))
+    own = shape.memory(region)
     return IfExpr(((remembered, call(_function(own, True), ref("Past"))), (entered, default)), kept)
 
 
-def _all_remembered(shape: RegionShape, memory: HistoryMemory, lane: Lane) -> Expr:
-    assert lane.owner is not None
-    outer = shape.region.lane(lane.owner)
-    owner = shape.literal(lane.owner)
-    if outer == shape.lane_of(memory.place):
+def _all_remembered(shape: RegionShape, memory: HistoryMemory, region: RegionId) -> Expr:
+    assert region.owner is not None
+    outer = shape.region.concurrent_region(region.owner)
+    owner = shape.literal(region.owner)
+    if outer == shape.concurrent_around(memory.region):
         return both(ref("Past", memory.known), equal(ref("Past", memory.last), owner))
-    above = shape.memory(Place(outer.owner, outer.name))
+    above = shape.memory(outer)
     return both(
         _all_remembered(shape, memory, outer),
         ref("Past", above.known),
@@ -172,28 +168,28 @@ class Restoring:
         self.shape = shape
         self.run = run
 
-    def statements(self, place: Place, deep: bool) -> tuple[Stmt, ...]:
-        """Entries below ``place`` for the leaf that its memory holds, or by default."""
-        memory = self.shape.memory(place)
+    def statements(self, region: RegionId, deep: bool) -> tuple[Stmt, ...]:
+        """Entries below ``region`` for the leaf that its memory holds, or by default."""
+        memory = self.shape.memory(region)
         rows = tuple(
-            (self.shape.literal(leaf), self._row(place, leaf, deep))
-            for leaf in self.shape.literals_in(place)
+            (self.shape.literal(leaf), self._row(region, leaf, deep))
+            for leaf in self.shape.literals(region)
         )
-        default = self._steps(self.shape.compounds.default(place))
+        default = self._steps(self.shape.compounds.default(region))
         known = (case_of(ref("Past", memory.last), rows),)
         return (IfStatement(((ref("Past", memory.known), known),), default),)
 
     def _steps(self, steps: tuple[EntryStep, ...]) -> tuple[Stmt, ...]:
         return self.run(steps)
 
-    def _row(self, place: Place, leaf: str, deep: bool) -> tuple[Stmt, ...]:
+    def _row(self, region: RegionId, leaf: str, deep: bool) -> tuple[Stmt, ...]:
         compounds = self.shape.compounds
-        target = _target(self.shape, place, leaf, deep)
+        target = _target(self.shape, region, leaf, deep)
         if target is None:
-            return self._steps(compounds.default(place))
+            return self._steps(compounds.default(region))
         state = self.shape.region.state(target)
         if not (deep and state.is_orthogonal and target == leaf):
-            return self._steps(compounds.into(place, [target]))
-        path = tuple(Enter(v) for v in compounds.below(place, target))
-        inner = [s for r in state.regions for s in self.statements(Place(target, r.name), True)]
+            return self._steps(compounds.into(region, [target]))
+        path = tuple(Enter(v) for v in compounds.below(region, target))
+        inner = [s for nested in state.region_ids for s in self.statements(nested, True)]
         return (*self._steps(path), *inner)

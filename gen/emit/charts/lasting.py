@@ -35,10 +35,9 @@ from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, Pragma, Stmt
 from ravenchart.gen.emit.ada.walking import rewritten
-from ravenchart.gen.emit.language.compound import TOP, Firing
-from ravenchart.gen.emit.language.places import conjuncts
-from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import After, Every
+from ravenchart.gen.emit.language.compound import Firing
+from ravenchart.gen.emit.language.configurations import conjuncts
+from ravenchart.gen.model.statechart import TOP, After, Every, RegionId
 
 from .deferring import change, is_changed
 from .shape import START, HistoryMemory, RegionShape
@@ -47,6 +46,12 @@ _STOPPED = ref("Ravenchart.Timers.Stopped")
 TIME_OUTS = "Time_Outs"
 """The type of a region's timers."""
 _TIMERS, _PAST = ref("Self.Timers"), ref("Self.Past")
+_TIMES_AFTER = (
+    "The time-outs afterwards: cancelled where their state is left, started where it is entered."
+)
+_REMEMBERED = (
+    "The memory of histories afterwards: the leaf that was left, or none after a final state."
+)
 
 
 def in_one_word(fact: Subprogram, told: str) -> list[Decl]:
@@ -77,8 +82,8 @@ def has_domains(shape: RegionShape) -> bool:
     return bool(shape.timers or shape.memories or shape.deferring)
 
 
-def _inside(place: Place) -> str:
-    return "Everything" if place == TOP else f"Inside_{ada_case(place.region or place.owner or '')}"
+def _inside(region: RegionId) -> str:
+    return "Everything" if region == TOP else f"Inside_{ada_case(region.label)}"
 
 
 def terminates(shape: RegionShape, firing: Firing) -> bool:
@@ -100,7 +105,7 @@ def domain_types(shape: RegionShape) -> list[Decl]:
     if not has_domains(shape):
         return []
     rows = tuple((f.literal, ref(_domain(shape, f))) for f in shape.firings)
-    regions = [Place(s.name, r.name) for s in shape.region.states for r in s.regions]
+    regions = [r for s in shape.region.states for r in s.region_ids]
     ends = ("Ending",) if _ends(shape) else ()
     literals = ("Nothing", *map(_inside, regions), "Everything", "Beginning", *ends)
     return [
@@ -112,7 +117,9 @@ def domain_types(shape: RegionShape) -> list[Decl]:
             "Domain",
             expression=choice_of(ref("T"), ((START, ref("Beginning")), *rows)),
         ),
-        Comment("Everything active inside it is left, and what is active then is entered."),
+        Comment(
+            "T leaves all states in its domain and enters those that are active there afterwards."
+        ),
     ]
 
 
@@ -124,7 +131,7 @@ def declared_lasting(shape: RegionShape) -> list[Decl]:
 
 def spans_of_states(shape: RegionShape) -> dict[str, Expr]:
     """For each state the test whether a domain holds a region around it."""
-    return {s.name: _spans(shape.compounds.places(s.name)) for s in shape.region.states}
+    return {s.name: _spans(shape.compounds.regions_around(s.name)) for s in shape.region.states}
 
 
 def _ends(shape: RegionShape) -> bool:
@@ -132,8 +139,8 @@ def _ends(shape: RegionShape) -> bool:
     return any(terminates(shape, f) for f in shape.firings)
 
 
-def _spans(places: list[Place], *more: str) -> Expr:
-    names = [_inside(p) for p in places] + list(more)
+def _spans(regions: list[RegionId], *more: str) -> Expr:
+    names = [_inside(r) for r in regions] + list(more)
     return one_of(ref("D"), names)
 
 
@@ -149,7 +156,7 @@ def _fresh(shape: RegionShape, index: int) -> Expr:
 def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
     rows: list[Arg] = []
     for i, timed in enumerate(shape.timers, 1):
-        places = shape.compounds.places(timed.source)
+        around = shape.compounds.regions_around(timed.source)
         active = both(
             *conjuncts(
                 [
@@ -159,7 +166,7 @@ def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
             )
         )
         after = shape.in_state("After", timed.source)
-        spanned, timer = _spans(places, "Beginning"), Indexed("Timers", plain(i))
+        spanned, timer = _spans(around, "Beginning"), Indexed("Timers", plain(i))
         moved = call("Ravenchart.Timers.Moved", timer, spanned, active, after, _fresh(shape, i))
         rows.append(Arg(plain(i), moved))
     moves: Expr = Aggregate(tuple(rows))
@@ -171,22 +178,22 @@ def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
             (
                 Param("Timers", "in", TIME_OUTS),
                 Param("D", "in", "Domain"),
-                Param("Before", "in", shape.place_type),
-                Param("After", "in", shape.place_type),
+                Param("Before", "in", shape.configuration_type),
+                Param("After", "in", shape.configuration_type),
             ),
             TIME_OUTS,
             expression=moves,
         ),
-        Comment("Each time-out: cancelled when its state is left, started when it is entered."),
+        Comment(_TIMES_AFTER),
     ]
 
 
 def _remembered(shape: RegionShape) -> list[Decl]:
     rows: list[Arg] = []
     for memory in shape.memories:
-        leaf = shape.at(shape.place, shape.lane_of(memory.place))
+        leaf = shape.at(shape.configuration_name, shape.concurrent_around(memory.region))
         left = conjuncts([_left(shape, memory), _active(shape, memory)])
-        children = shape.region.children(memory.place.owner, memory.place.region)
+        children = shape.region.children(*memory.region)
         goes_on = [OperatorChain("/=", (leaf, shape.literal(s.name))) for s in children if s.final]
         last = IfExpr(((both(*left, *goes_on), leaf),), ref("Past", memory.last))
         known = IfExpr(((both(*left), both(*goes_on)),), ref("Past", memory.known))
@@ -196,44 +203,44 @@ def _remembered(shape: RegionShape) -> list[Decl]:
             "Remembered",
             (
                 Param("D", "in", "Domain"),
-                Param(shape.place, "in", shape.place_type),
+                Param(shape.configuration_name, "in", shape.configuration_type),
                 Param("Past", "in", "Memory"),
             ),
             "Memory",
             expression=Aggregate(tuple(rows)),
         ),
-        Comment("What histories know then: the leaf that was left, nothing after a final state."),
+        Comment(_REMEMBERED),
     ]
 
 
 def _left(shape: RegionShape, memory: HistoryMemory) -> Expr:
     """Is the leaf of the memory's region left, when there is one?"""
-    assert memory.place.owner is not None
-    around = [memory.place, *shape.compounds.places(memory.place.owner)]
-    lane = shape.lane_of(memory.place)
+    assert memory.region.owner is not None
+    around = [memory.region, *shape.compounds.regions_around(memory.region.owner)]
+    concurrent = shape.concurrent_around(memory.region)
     inner = [
-        p
+        r
         for s in shape.region.states
-        for r in s.regions
-        for p in (Place(s.name, r.name),)
-        if p != memory.place
-        and shape.lane_of(p) == lane
-        and memory.place in shape.compounds.places(s.name)
+        for r in s.region_ids
+        if r != memory.region
+        and shape.concurrent_around(r) == concurrent
+        and memory.region in shape.compounds.regions_around(s.name)
     ]
     return _spans([*inner, *around])
 
 
 def _active(shape: RegionShape, memory: HistoryMemory) -> Expr:
     """Is there a leaf in the memory's region? A pseudostate is not remembered."""
-    assert memory.place.owner is not None
+    assert memory.region.owner is not None
     passed = {p.name for p in shape.region.pseudostates}
-    leaf = shape.at(shape.place, shape.lane_of(memory.place))
+    leaf = shape.at(shape.configuration_name, shape.concurrent_around(memory.region))
     not_left = [
         OperatorChain("/=", (leaf, shape.literal(v)))
-        for v in shape.literals_in(memory.place)
+        for v in shape.literals(memory.region)
         if v in passed
     ]
-    return both(*conjuncts([shape.in_state(shape.place, memory.place.owner), *not_left]))
+    active = shape.in_state(shape.configuration_name, memory.region.owner)
+    return both(*conjuncts([active, *not_left]))
 
 
 # --- The contract of transitions ----------------------------------------------

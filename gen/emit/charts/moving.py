@@ -27,7 +27,7 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, case_of, do
 from ravenchart.gen.emit.language.terms import emit_flow
 from ravenchart.gen.language.terms import Flow
-from ravenchart.gen.model.chart.tree import Place
+from ravenchart.gen.model.statechart import RegionId
 
 from .nodes import Nodes, as_one_move
 from .shape import RegionShape
@@ -36,8 +36,8 @@ BEFORE = "Before"
 """The configuration before a transition."""
 
 
-def _leave_name(place: Place) -> str:
-    return f"Leave_{ada_case(place.region or place.owner or '')}"
+def _leave_name(region: RegionId) -> str:
+    return f"Leave_{ada_case(region.label)}"
 
 
 class Moving:
@@ -51,7 +51,7 @@ class Moving:
         self.held = shape.held
         self._exited: set[str] = set()
         self._entered: set[str] = set()
-        self._left: set[Place] = set()
+        self._left: set[RegionId] = set()
 
     def exit(self, state: str) -> tuple[Stmt, ...]:
         """The exit of one state, or of a pseudostate that is passed."""
@@ -71,29 +71,29 @@ class Moving:
             return (do(f"Enter_{ada_case(vertex)}"),)
         return (self.nodes.enter(vertex), *self._noted(vertex, "entry"))
 
-    def leave(self, place: Place) -> Stmt:
+    def leave(self, region: RegionId) -> Stmt:
         """The exits of all that is active in a region."""
-        if place.owner is not None and self._is_silent(place):
-            return self.nodes.leave(place, BEFORE)
-        if place not in self._left:
-            self._left.add(place)
-            for child in self.region.children(place.owner, place.region):
+        if region.owner is not None and self._is_silent(region):
+            return self.nodes.leave(region, BEFORE)
+        if region not in self._left:
+            self._left.add(region)
+            for child in self.region.children(*region):
                 self.exit(child.name)
-                for nested in child.regions:
-                    self.leave(Place(child.name, nested.name))
-        return do(_leave_name(place))
+                for nested in child.region_ids:
+                    self.leave(nested)
+        return do(_leave_name(region))
 
-    def _is_silent(self, place: Place) -> bool:
+    def _is_silent(self, region: RegionId) -> bool:
         """Whether nothing is done there however it is left, and no orthogonal region ends there."""
-        states = self.region.children(place.owner, place.region)
+        states = self.region.children(*region)
         return (
-            place.owner is not None
-            and not self.shape.compounds.passed(place)
+            region.owner is not None
+            and not self.shape.compounds.passed(region)
             and not any(
                 s.is_orthogonal or self._work_of_exit(s.name) or self._noted(s.name, "exit")
                 for s in states
             )
-            and all(self._is_silent(Place(s.name, r.name)) for s in states for r in s.regions)
+            and all(self._is_silent(nested) for s in states for nested in s.region_ids)
         )
 
     def flows(self) -> list[Flow]:
@@ -107,9 +107,9 @@ class Moving:
         """Those that the statements given so far call."""
         states = self.region.states
         exits = [self._exit(s.name) for s in states if s.name in self._exited]
-        places = [Place(s.name, r.name) for s in reversed(states) for r in s.regions]
-        left = [p for p in places if p in self._left]
-        leavings = [self._leaving(p) for p in left]
+        regions = [nested for s in reversed(states) for nested in s.region_ids]
+        left = [region for region in regions if region in self._left]
+        leavings = [self._leaving(region) for region in left]
         entries = [self._entry(s.name) for s in states if s.name in self._entered]
         return (*exits, *leavings, *entries)
 
@@ -165,28 +165,25 @@ class Moving:
         if not state.final or owner is None or owner not in shape.completing:
             return ()
         done = Assign(ref("Self", shape.completed(owner)), TRUE)
-        others = [r for r in self.region.state(owner).regions if r.name != state.region]
+        others = [r for r in self.region.state(owner).region_ids if r.name != state.region]
         parts: list[Expr] = [ref("Self", shape.done(owner))] if owner in shape.working else []
         for nested in others:
-            leaf = shape.at(self.held, shape.lane_of(Place(owner, nested.name)))
+            leaf = shape.at(self.held, shape.concurrent_around(nested))
             finals = [
-                equal(leaf, shape.literal(s.name))
-                for s in self.region.children(owner, nested.name)
-                if s.final
+                equal(leaf, shape.literal(s.name)) for s in self.region.children(*nested) if s.final
             ]
             parts.append(chain("or else", finals, FALSE))
         return (IfStatement(((both(*parts), (done,)),)),) if parts else (done,)
 
-    def _leaving(self, place: Place) -> Subprogram:
-        assert place.owner is not None
+    def _leaving(self, region: RegionId) -> Subprogram:
+        assert region.owner is not None
         shape = self.shape
         rows: list[tuple[Choice, tuple[Stmt, ...]]] = []
-        for child in self.region.children(place.owner, place.region):
-            inner = [self.leave(Place(child.name, r.name)) for r in child.regions]
+        for child in self.region.children(*region):
+            inner = [self.leave(nested) for nested in child.region_ids]
             rows.append((shape.literal(child.name), as_one_move((*inner, *self.exit(child.name)))))
-        rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(place)]
-        lane = shape.lane_of(place)
-        leaf: Expr = shape.at(BEFORE, lane)
-        if not self.region.state(place.owner).is_orthogonal:
-            leaf = Qualified(shape.literal(place.owner), leaf)
-        return Subprogram(_leave_name(place), body=(case_of(leaf, rows),))
+        rows += [(shape.literal(p), self.exit(p)) for p in shape.compounds.passed(region)]
+        leaf: Expr = shape.at(BEFORE, shape.concurrent_around(region))
+        if not self.region.state(region.owner).is_orthogonal:
+            leaf = Qualified(shape.literal(region.owner), leaf)
+        return Subprogram(_leave_name(region), body=(case_of(leaf, rows),))

@@ -43,10 +43,9 @@ from ravenchart.gen.emit.ada.expressions import (
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.statements import Assign, Stmt
 from ravenchart.gen.emit.ada.walking import names_in
+from ravenchart.gen.emit.language.configurations import conjuncts
 from ravenchart.gen.emit.language.own_names import node_literal
-from ravenchart.gen.emit.language.places import conjuncts
-from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import Lane
+from ravenchart.gen.model.statechart import RegionId
 
 from .shape import RegionShape
 
@@ -106,14 +105,14 @@ class Nodes:
         others.
         """
         shape = self.shape
-        literals = [leaf for lane in shape.lanes for leaf in shape.literals(lane)]
+        literals = [leaf for region in shape.concurrent for leaf in shape.literals(region)]
         composites = [s.name for s in self.region.states if not shape.is_literal(s.name)]
         named = set(names_in(fire)) if composites else set()
         composites = [name for name in composites if node(name) in named]
         names = tuple(node_literal(v) for v in (*literals, *composites))
         items: list[Decl] = [EnumType("Node", (_NOWHERE, *names, _DISORDER))]
         if not shape.single:
-            rows = tuple(RecordComponent(shape.lane_name(n), "Node") for n in shape.lanes)
+            rows = tuple(RecordComponent(shape.label(r), "Node") for r in shape.concurrent)
             items.append(RecordDeclaration("Nodes", rows))
         return Package(CHART, (*items, self._innermost()), (_GHOST,))
 
@@ -139,15 +138,16 @@ class Nodes:
         held = shape.held
         rows: list[Arg] = []
         before = 1
-        for lane in shape.lanes:
-            of_lane = ref(shape.states, shape.lane_type(lane))
-            leaf = call(Attribute(of_lane, "Pos"), shape.at(held, lane))
+        for region in shape.concurrent:
+            of_region = ref(shape.states, shape.leaves_type(region))
+            leaf = call(Attribute(of_region, "Pos"), shape.at(held, region))
             found: Expr = call(Attribute("Node", "Val"), OperatorChain("+", (leaf, number(before))))
             active: list[Expr] = [ref("Self.Started")]
-            active += [] if lane.owner is None else conjuncts([shape.in_state(held, lane.owner)])
+            if region.owner is not None:
+                active += conjuncts([shape.in_state(held, region.owner)])
             found = IfExpr(((both(*active), found),), ref(_NOWHERE))
-            rows.append(Arg(shape.lane_name(lane), found))
-            before += len(shape.literals(lane))
+            rows.append(Arg(shape.label(region), found))
+            before += len(shape.literals(region))
         params = (Param("Self", "in", "Region"),)
         if shape.single:
             return Subprogram("Innermost", params, "Node", expression=rows[0].value)
@@ -155,19 +155,19 @@ class Nodes:
 
     def _around(self, vertex: str) -> DottedName:
         """The state around a vertex, unless an orthogonal region begins between them."""
-        place = self.shape.compounds.place(vertex)
-        if place.owner is None or self.region.state(place.owner).is_orthogonal:
+        region = self.shape.compounds.region_of(vertex)
+        if region.owner is None or self.region.state(region.owner).is_orthogonal:
             return _NONE_ACTIVE
-        return node(place.owner)
+        return node(region.owner)
 
     # --- the variables
 
-    def _part(self, nodes: DottedName, lane: Lane) -> DottedName:
-        return nodes if self.shape.single else ref(nodes, self.shape.lane_name(lane))
+    def _part(self, nodes: DottedName, region: RegionId) -> DottedName:
+        return nodes if self.shape.single else ref(nodes, self.shape.label(region))
 
-    def active(self, lane: Lane) -> DottedName:
-        """The innermost active state of a top-level or orthogonal region."""
-        return self._part(_ACTIVE, lane)
+    def active(self, region: RegionId) -> DottedName:
+        """The innermost active state of a concurrent region."""
+        return self._part(_ACTIVE, region)
 
     def variables(self) -> list[Decl]:
         """The active vertices; where a region is left at once, also those at first."""
@@ -193,36 +193,36 @@ class Nodes:
 
     def exit(self, state: str) -> Assign:
         """The exit of a state."""
-        lanes = self._idle(self.shape.lanes_of(state))
-        return self._moved(state, (node(state), self._around(state)), lanes)
+        others = self._idle(self.shape.orthogonal_regions(state))
+        return self._moved(state, (node(state), self._around(state)), others)
 
     def enter(self, vertex: str) -> Assign:
         """The entry of a vertex, where its parent is active and nothing in its own region is."""
-        place = self.shape.compounds.place(vertex)
-        others = self._idle(self.shape.lanes_of(vertex))
-        if place.owner is not None and self.region.state(place.owner).is_orthogonal:
-            others = [equal(self._of(place.owner), node(place.owner)), *others]
+        region = self.shape.compounds.region_of(vertex)
+        others = self._idle(self.shape.orthogonal_regions(vertex))
+        if region.owner is not None and self.region.state(region.owner).is_orthogonal:
+            others = [equal(self._of(region.owner), node(region.owner)), *others]
         return self._moved(vertex, (self._around(vertex), node(vertex)), others)
 
-    def leave(self, place: Place, before: str) -> Assign:
+    def leave(self, region: RegionId, before: str) -> Assign:
         """The exits of all that was active ``before`` in a region, all at once."""
-        assert place.owner is not None
+        assert region.owner is not None
         self._moves = self._asks = self._leaves = True
-        active = self.active(self.shape.lane_of(place))
-        within = self.shape.in_state(before, place.owner)
-        start = self._part(_AT_FIRST, self.shape.lane_of(place))
-        return Assign(active, call(_MOVED, active, start, self._inside(place), within))
+        active = self.active(self.shape.concurrent_around(region))
+        within = self.shape.in_state(before, region.owner)
+        start = self._part(_AT_FIRST, self.shape.concurrent_around(region))
+        return Assign(active, call(_MOVED, active, start, self._inside(region), within))
 
     def stands(self, vertex: str) -> Assign:
         """The claim that a vertex is the innermost active one of its region."""
         return self._moved(vertex, (node(vertex), node(vertex)), ())
 
-    def empty(self, place: Place) -> Assign:
+    def empty(self, region: RegionId) -> Assign:
         """The claim that nothing in a region is active."""
         self._moves = True
-        idle = self._idle(self.lanes_inside(place))
+        idle = self._idle(self.orthogonal_inside(region))
         self._asks |= bool(idle)
-        active, inside = self.active(self.shape.lane_of(place)), self._inside(place)
+        active, inside = self.active(self.shape.concurrent_around(region)), self._inside(region)
         asked = (both(*idle),) if idle else ()
         return Assign(active, call(_MOVED, active, inside, inside, *asked))
 
@@ -236,30 +236,29 @@ class Nodes:
         return Assign(active, call(_MOVED, active, *way, *asked))
 
     def _of(self, vertex: str) -> DottedName:
-        """The variable of the top-level or orthogonal region that a vertex stands in."""
-        return self.active(self.shape.lane_of(self.shape.compounds.place(vertex)))
+        """The variable of the concurrent region that a vertex stands in."""
+        region = self.shape.compounds.region_of(vertex)
+        return self.active(self.shape.concurrent_around(region))
 
     def stopped(self, end_of_all: str) -> list[Assign]:
         """The end of the chart, a leaf of the top-level region: no orthogonal region is active."""
         found = []
-        for lane in self.shape.lanes:
-            active = self.active(lane)
-            end = node(end_of_all) if lane.owner is None else _NONE_ACTIVE
+        for region in self.shape.concurrent:
+            active = self.active(region)
+            end = node(end_of_all) if region.owner is None else _NONE_ACTIVE
             found.append(Assign(active, IfExpr(((equal(active, _NO_ORDER), _NO_ORDER),), end)))
         return found
 
-    def _inside(self, place: Place) -> DottedName:
+    def _inside(self, region: RegionId) -> DottedName:
         """The state around a region; none where the region is orthogonal or the top."""
-        owner = place.owner if self.shape.lane_of(place).owner != place.owner else None
-        return _NONE_ACTIVE if owner is None else node(owner)
+        if region.owner is None or self.shape.concurrent_around(region) == region:
+            return _NONE_ACTIVE
+        return node(region.owner)
 
-    def _idle(self, lanes: Sequence[Lane]) -> list[Expr]:
-        return [equal(self.active(n), _NONE_ACTIVE) for n in lanes]
+    def _idle(self, regions: Sequence[RegionId]) -> list[Expr]:
+        return [equal(self.active(region), _NONE_ACTIVE) for region in regions]
 
-    def lanes_inside(self, place: Place) -> list[Lane]:
+    def orthogonal_inside(self, region: RegionId) -> list[RegionId]:
         """The regions of the orthogonal states inside a region."""
-        return [
-            n
-            for n in self.shape.lanes
-            if n.owner is not None and place in self.shape.compounds.places(n.owner)
-        ]
+        around = self.shape.compounds.regions_around
+        return [r for r in self.shape.concurrent if r.owner and region in around(r.owner)]

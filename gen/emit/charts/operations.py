@@ -34,12 +34,13 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.language.events import name_of
+from ravenchart.gen.model.statechart import TOP
 
 from .deferring import due, is_taken
-from .lanes import LIST, followed, is_only
 from .lasting import Lasting
 from .safety import Safety
 from .selection import is_selected
+from .several_transitions import LIST, followed, is_only
 from .shape import START, RegionShape
 from .working import notices
 
@@ -59,7 +60,7 @@ def operations(shape: RegionShape) -> list[Decl]:
         nearer = ForAll("I", _EACH_TIMER, equal(Indexed("Self.Timers", ref("I")), ticked))
         items += [
             Subprogram("Tick", (self_out,), aspects=(Aspect("Post", both(same, nearer)),)),
-            Comment("One more execution: the time-outs come nearer."),
+            Comment("Count one execution for each time-out."),
         ]
     items += notices(shape, same)
     if shape.region.events():
@@ -107,10 +108,12 @@ def operations(shape: RegionShape) -> list[Decl]:
     return items
 
 
-_POLLS_TIME = "Its start, or the time-out that is due; Conditions when there is neither."
+_POLLS_TIME = (
+    "The next occurrence: the start or the time-out that is due; Conditions when there is neither."
+)
 _POLLS = (
-    "Its start, a completion, the time-out that is due or a deferred event that is due again; "
-    "Conditions when there is none."
+    "The next occurrence: the start, a completion, the time-out that is due or a deferred event "
+    "that is due; Conditions when there is none."
 )
 
 
@@ -173,7 +176,7 @@ def _stepped(shape: RegionShape) -> list[Expr]:
     kept = equal(held, old(held))
     begun = equal(ref("Now"), ref("Start_Of_Region"))
     first = Indexed("Fired.Items", plain(1)) if shape.listed else ref("Fired")
-    chosen = is_selected(shape, first, shape.lanes[-1], Self=old("Self"))
+    chosen = is_selected(shape, first, TOP, Self=old("Self"))
     started = equal(first, ref(START))
     if not shape.listed:
         none = equal(ref("Fired"), ref("None"))

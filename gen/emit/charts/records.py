@@ -51,7 +51,7 @@ def chart_types(shape: RegionShape) -> list[Decl]:
     path = f"{shape.component.name}.{shape.region.name}"
     items: list[Decl] = _use_types(shape)
     items += [
-        Comment(f"[{path}] what a step can be made for"),
+        Comment(f"[{path}] the occurrences that a step can handle"),
         EnumType("Occurrence", shape.occurrences()),
         Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
         EnumType("Selection", (START, *names, "None"), _places(shape)),
@@ -59,7 +59,7 @@ def chart_types(shape: RegionShape) -> list[Decl]:
         SubtypeDeclaration("Transition", _selection_of(names)),
     ]
     if not shape.single:
-        items += _lane_types(shape)
+        items += _choice_types(shape)
     return items
 
 
@@ -82,9 +82,9 @@ def _selection_of(names: Sequence[str]) -> RangeConstrained:
 def _use_types(shape: RegionShape) -> list[Decl]:
     """The types whose operators the declared chart uses."""
     region = shape.region
-    own = {ref(shape.states, shape.lane_type(n)) for n in shape.lanes}
+    own = {ref(shape.states, shape.leaves_type(r)) for r in shape.concurrent}
     if not shape.single:
-        own.add(shape.place_type)
+        own.add(shape.configuration_type)
     leaf = ref(shape.states, "Leaf")
     ordered = [leaf, *sorted(own - {leaf})]
     return [
@@ -98,16 +98,16 @@ def _use_types(shape: RegionShape) -> list[Decl]:
     ]
 
 
-def _lane_types(shape: RegionShape) -> list[Decl]:
+def _choice_types(shape: RegionShape) -> list[Decl]:
     items: list[Decl] = []
     fields: list[RecordComponent] = []
-    for lane in shape.busy_lanes:
-        own = [f.literal for f in shape.firings if f.lane == lane]
-        name = shape.lane_name(lane)
-        items.append(SubtypeDeclaration(shape.transitions_of(lane), _selection_of(own)))
+    for region in shape.busy_regions:
+        own = [f.literal for f in shape.firings if f.region == region]
+        name = shape.label(region)
+        items.append(SubtypeDeclaration(shape.transitions_of(region), _selection_of(own)))
         fields.append(RecordComponent(name, "Selection", ref("None")))
     items += [
-        Comment("What one occurrence fires: at most one transition in each lane."),
+        Comment("The transitions selected for one occurrence: at most one in each region."),
         RecordDeclaration("Choice", tuple(fields)),
     ]
     return items
@@ -119,7 +119,7 @@ def memory(shape: RegionShape) -> list[Decl]:
         return []
     past: list[RecordComponent] = []
     for one in shape.memories:
-        first = next(iter(shape.literals_in(one.place)))
+        first = shape.literals(one.region)[0]
         past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
         past.append(RecordComponent(one.known, "Boolean", FALSE))
     return [
@@ -152,7 +152,7 @@ def records(shape: RegionShape) -> list[Decl]:
             for n in shape.inputs
         )
         items += [
-            Comment("What it reads, copied in once per execution."),
+            Comment("The inputs of the region, copied in once per execution."),
             RecordDeclaration("Inputs", rows),
         ]
     if shape.has_box:
@@ -169,7 +169,7 @@ def records(shape: RegionShape) -> list[Decl]:
                     )
                 sent.append(RecordComponent(f"{name}_Sent", "Boolean", FALSE))
         items += [
-            Comment("What one step sends and raises."),
+            Comment("The values that one step sends, and the events that it raises."),
             RecordDeclaration("Outbox", tuple(sent)),
         ]
     if shape.timers:
@@ -189,7 +189,11 @@ def records(shape: RegionShape) -> list[Decl]:
 def _region_fields(shape: RegionShape) -> tuple[RecordComponent, ...]:
     rows = [
         RecordComponent("Started", "Boolean", FALSE),
-        RecordComponent(shape.place, shape.place_type, shape.initial() if shape.single else None),
+        RecordComponent(
+            shape.configuration_name,
+            shape.configuration_type,
+            shape.initial() if shape.single else None,
+        ),
     ]
     if shape.memories:
         rows.append(RecordComponent("Past", "Memory"))

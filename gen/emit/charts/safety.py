@@ -42,7 +42,7 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment, Pragma
 from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.emit.language.compound import Firing
-from ravenchart.gen.emit.language.places import conjuncts
+from ravenchart.gen.emit.language.configurations import conjuncts
 from ravenchart.gen.emit.language.terms import Scope, emit_expression, operators_in
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Invariant
@@ -79,14 +79,16 @@ class Safety:
         if self.has_data:
             items.append(Object(_INITIAL, "Variables", all_else(BOX), constant=True))
         for name, function in zip(self.safe.invariants, self._invariants, strict=True):
-            told = f"[{self.shape.component.name}.{name}] the condition of `never` is false."
+            told = (
+                f"[{self.shape.component.name}.{name}] True when the condition of `never` is false."
+            )
             items += [function, Comment(told)]
         if self._facts is not None:
             items += [self._facts, Comment(_FACTS)]
-        items += [self._is_safe, Comment("Each transition and each segment keeps it.")]
+        items += [self._is_safe, Comment(_SAFE)]
         items += [
             self._is_kept,
-            Comment("The region between steps; before the first one its data are initial."),
+            Comment(_BETWEEN),
         ]
         kept = Aspect("Predicate", call(_KEPT, ref(_SAFE_REGION)))
         items.append(SubtypeDeclaration(_SAFE_REGION, "Region", aspects=(kept,)))
@@ -94,9 +96,8 @@ class Safety:
             items += [self._guards, Comment(_GUARDS)]
         return items
 
-    def _place_and_data(self, said: Expr) -> tuple[Param, ...]:
-        place = Param(self.shape.place, "in", self.shape.place_type)
-        return used([place, DATA], said)
+    def _configuration_and_data(self, said: Expr) -> tuple[Param, ...]:
+        return used([self.shape.configuration_param, DATA], said)
 
     @cached_property
     def _invariants(self) -> tuple[Subprogram, ...]:
@@ -105,7 +106,8 @@ class Safety:
         for one in self._conditions():
             free = Prefix("not", emit_expression(self._scope, self._with_constants(one.condition)))
             name = f"Never_{ada_case(one.name)}"
-            made.append(Subprogram(name, self._place_and_data(free), "Boolean", expression=free))
+            params = self._configuration_and_data(free)
+            made.append(Subprogram(name, params, "Boolean", expression=free))
         return tuple(made)
 
     def _conditions(self) -> tuple[Invariant, ...]:
@@ -122,15 +124,13 @@ class Safety:
             by_vertex.setdefault(fact.vertex, []).append(said)
         if not by_vertex:
             return None
+        held = self.shape.configuration_name
         rows = [
-            IfExpr(
-                ((self.shape.in_state(self.shape.place, vertex), both(*conjuncts(said))),),
-                None,
-            )
+            IfExpr(((self.shape.in_state(held, vertex), both(*conjuncts(said))),), None)
             for vertex, said in by_vertex.items()
         ]
         known = both(*rows)
-        params = self._place_and_data(known)
+        params = self._configuration_and_data(known)
         return Subprogram("Data_Are_Known", params, "Boolean", expression=known)
 
     @cached_property
@@ -138,7 +138,7 @@ class Safety:
         parts = [_of(function) for function in self._invariants]
         parts += [] if self._facts is None else [_of(self._facts)]
         safe = both(*parts)
-        return Subprogram("Is_Safe", self._place_and_data(safe), "Boolean", expression=safe)
+        return Subprogram("Is_Safe", self._configuration_and_data(safe), "Boolean", expression=safe)
 
     @cached_property
     def _is_kept(self) -> Subprogram:
@@ -169,7 +169,7 @@ class Safety:
 
     def _guard(self, firing: Firing) -> list[Expr]:
         passes = self.region.pseudostate(firing.sources[0]) is not None
-        alone = passes or knows_guards(self.region, firing.lane) or self._is_alone(firing)
+        alone = passes or knows_guards(self.region, firing.region) or self._is_alone(firing)
         if not alone:
             return []
         scope = self.shape.scope("Data")
@@ -187,9 +187,10 @@ class Safety:
         said: list[Expr] = []
         for firing in self.shape.firings:
             if self._is_alone(firing):
-                lanes = self.shape.busy_lanes[: self.shape.busy_lanes.index(firing.lane)]
-                none = [equal(ref("C", self.shape.lane_name(n)), ref("None")) for n in lanes]
-                own = ref("C", self.shape.lane_name(firing.lane))
+                regions = self.shape.busy_regions
+                before = regions[: regions.index(firing.region)]
+                none = [equal(ref("C", self.shape.label(r)), ref("None")) for r in before]
+                own = ref("C", self.shape.label(firing.region))
                 said.append(IfExpr(((equal(own, ref(firing.literal)), both(*none)),), None))
         return tuple(Pragma("Assert", (one,)) for one in said)
 
@@ -199,7 +200,7 @@ class Safety:
 
         def variable(name: str) -> DottedName:
             if name.lower() == self.region.name.lower():
-                return ref(self.shape.place)
+                return ref(self.shape.configuration_name)
             return ref("Data", ada_case(name))
 
         return replace(self.shape.scope("Data"), variable=variable)
@@ -271,11 +272,16 @@ class Safety:
 
 _SAFE_REGION = "Safe_Region"
 _FACTS = (
-    "What holds of data while a leaf is active: without it a transition might break an invariant."
+    "Whether the data have the values known for the active leaf. Without this fact a transition "
+    "might break an invariant."
+)
+_SAFE = "Whether the invariants of the region hold. Each transition and each segment keeps them."
+_BETWEEN = (
+    "Whether the region is as between two steps: the invariants hold, and before the start the "
+    "data are initial."
 )
 _GUARDS = (
-    "The guards of transitions and segments; True where something else may have fired before in "
-    "the same step."
+    "Whether the guard of T holds. True where the step may have taken another transition before T."
 )
 _OTHERS = (OTHERS, TRUE)
 

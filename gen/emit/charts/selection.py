@@ -43,7 +43,7 @@ from ravenchart.gen.emit.ada.statements import (
     case_of,
 )
 from ravenchart.gen.emit.language.compound import PASSED, Firing
-from ravenchart.gen.model.statechart import Lane
+from ravenchart.gen.model.statechart import RegionId
 
 from .shape import PASSING, RegionShape
 
@@ -79,9 +79,9 @@ def is_selection(shape: RegionShape) -> Subprogram:
     )
 
 
-def is_selected(shape: RegionShape, chosen: Expr, lane: Lane, **replaced: Expr) -> Call:
+def is_selected(shape: RegionShape, chosen: Expr, region: RegionId, **replaced: Expr) -> Call:
     """A call of that function over the transitions of a region."""
-    args = (Arg(None, chosen), *_bounds(shape, shape.transitions_of(lane)))
+    args = (Arg(None, chosen), *_bounds(shape, shape.transitions_of(region)))
     return Call("Is_Selection", (*args, *shape.situation_args(**replaced)))
 
 
@@ -96,13 +96,13 @@ def _bounds(shape: RegionShape, among: str) -> tuple[Arg, ...]:
 
 def selectors(shape: RegionShape) -> list[Decl]:
     """The selection for each region, of segments, and for all orthogonal regions."""
-    each = [_selected(shape, lane) for lane in shape.busy_lanes]
+    each = [_selected(shape, region) for region in shape.busy_regions]
     return [*each, *_segments(shape), *([] if shape.single else [_choose(shape)])]
 
 
-def whole(shape: RegionShape, lane: Lane) -> Call:
+def whole(shape: RegionShape, region: RegionId) -> Call:
     """The selection of a top-level or orthogonal region."""
-    return Call(_name(shape, lane), shape.situation_args())
+    return Call(_name(shape, region), shape.situation_args())
 
 
 def segment(shape: RegionShape) -> Expr:
@@ -110,34 +110,35 @@ def segment(shape: RegionShape) -> Expr:
     return call(_SEGMENT, *(ref(p.name) for p in shape.situation if p.name != "Now"))
 
 
-def _name(shape: RegionShape, lane: Lane) -> str:
-    return _SELECTED if shape.single else f"{_SELECTED}_{shape.lane_name(lane)}"
+def _name(shape: RegionShape, region: RegionId) -> str:
+    return _SELECTED if shape.single else f"{_SELECTED}_{shape.label(region)}"
 
 
-def _selected(shape: RegionShape, lane: Lane) -> Subprogram:
+def _selected(shape: RegionShape, region: RegionId) -> Subprogram:
     """The first enabled transition of a region."""
-    own = [f for f in shape.firings if f.lane == lane]
+    own = [f for f in shape.firings if f.region == region]
     none = Return(ref("None"))
     rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = []
     for occurrence in shape.occurrences():
         if asked := [f for f in own if occurrence in shape.triggers(f)]:
             rows.append((occurrence, (Return(_first(shape, asked)),)))
-    name = _name(shape, lane)
+    name = _name(shape, region)
     return Subprogram(
         name,
         shape.situation,
         "Selection",
-        aspects=(Aspect("Post", is_selected(shape, result(name), lane)),),
+        aspects=(Aspect("Post", is_selected(shape, result(name), region)),),
         body=(case_of(ref("Now"), [*rows, (OTHERS, (none,))]) if rows else none,),
     )
 
 
 def _first(
     shape: RegionShape, among: Sequence[Firing], rest: str = "None", **replaced: Expr
-) -> IfExpr:
+) -> Expr:
     """The first of these that is enabled, or the rest."""
     literals = [ref(firing.literal) for firing in among]
-    return IfExpr(tuple((enabled(shape, t, **replaced), t) for t in literals), ref(rest))
+    rows = tuple((enabled(shape, t, **replaced), t) for t in literals)
+    return IfExpr(rows, ref(rest)) if rows else ref(rest)
 
 
 def _segments(shape: RegionShape) -> list[Decl]:
@@ -170,9 +171,9 @@ def _segments(shape: RegionShape) -> list[Decl]:
 def _choose(shape: RegionShape) -> Subprogram:
     """All regions; one around another selects only when the inner one does not."""
     steps: list[Stmt] = []
-    for lane in shape.busy_lanes:
-        take = Assign(ref("C", shape.lane_name(lane)), whole(shape, lane))
-        idle = [equal(ref("C", shape.lane_name(n)), ref("None")) for n in shape.inner_lanes(lane)]
+    for region in shape.busy_regions:
+        take = Assign(ref("C", shape.label(region)), whole(shape, region))
+        idle = [equal(ref("C", shape.label(r)), ref("None")) for r in shape.inner_regions(region)]
         steps.append(IfStatement(((chain("and then", idle), (take,)),)) if idle else take)
     return Subprogram(
         "Choose",

@@ -24,10 +24,10 @@ from ravenchart.gen.emit.ada.expressions import (
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import ada_case, component_name, region_package
 from ravenchart.gen.emit.ada.statements import Stmt, do
-from ravenchart.gen.emit.language.compound import PASSED, TOP, EntryStep, Firing, FiringKind
+from ravenchart.gen.emit.language.compound import PASSED, EntryStep, Firing, FiringKind
+from ravenchart.gen.emit.language.configurations import Configurations, conjuncts
 from ravenchart.gen.emit.language.events import carries, event_value
-from ravenchart.gen.emit.language.own_names import event_literal, lane_name
-from ravenchart.gen.emit.language.places import Places, conjuncts
+from ravenchart.gen.emit.language.own_names import event_literal, region_label
 from ravenchart.gen.emit.language.terms import (
     Scope,
     asks_event,
@@ -38,17 +38,17 @@ from ravenchart.gen.emit.language.terms import (
     raise_in_list,
 )
 from ravenchart.gen.language import terms as m
-from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.statechart import (
+    TOP,
     After,
     Completion,
     Every,
-    Lane,
     OnEvent,
     PseudoKind,
     Region,
+    RegionId,
     Segment,
     Transition,
     When,
@@ -83,7 +83,7 @@ ITEM = Param("Item", "in", "Event")
 class HistoryMemory:
     """The memory of a history: the last leaf left in a region."""
 
-    place: Place
+    region: RegionId
     label: str
 
     @property
@@ -97,7 +97,7 @@ class HistoryMemory:
         return f"Known_In_{self.label}"
 
 
-class RegionShape(Places):
+class RegionShape(Configurations):
     """The types of one region's package; asked by its emitters and by the instances'."""
 
     def __init__(
@@ -120,47 +120,45 @@ class RegionShape(Places):
 
     def in_sources(self, firing: Firing) -> Expr:
         """Are all its sources active?"""
-        return both(*conjuncts([self.in_state(self.place, s) for s in firing.sources]))
+        return both(*conjuncts([self.in_state(self.configuration_name, s) for s in firing.sources]))
 
-    def leads_to(self, firing: Firing) -> dict[Lane, str]:
+    def leads_to(self, firing: Firing) -> dict[RegionId, str]:
         """The leaves that a move leads to."""
         if firing.goal is not None and self.is_end(firing.goal):
-            return self.after(firing.entries[:-1]) | {self.lanes[-1]: firing.goal}
+            return self.after(firing.entries[:-1]) | {TOP: firing.goal}
         return self.after(firing.entries)
 
-    # --- top-level and orthogonal regions
+    # --- concurrent regions
 
     @cached_property
-    def busy_lanes(self) -> tuple[Lane, ...]:
+    def busy_regions(self) -> tuple[RegionId, ...]:
         """The regions with transitions, in the order of a step; the top-level one if none has."""
-        busy = tuple(n for n in self.lanes if any(f.lane == n for f in self.firings))
-        return busy or self.lanes[-1:]
+        busy = tuple(n for n in self.concurrent if any(f.region == n for f in self.firings))
+        return busy or (TOP,)
 
-    def lane_name(self, lane: Lane) -> str:
-        """Its component of a choice."""
-        return "Top" if lane.owner is None else lane_name(lane.name)
+    def label(self, region: RegionId) -> str:
+        """Its name among the concurrent regions: a component of choices and nodes."""
+        return "Top" if region.owner is None else region_label(region.name)
 
-    def transitions_of(self, lane: Lane) -> str:
+    def transitions_of(self, region: RegionId) -> str:
         """The subtype of a region's transitions, where there are orthogonal regions."""
-        return f"{self.lane_name(lane)}_Transition"
+        return f"{self.label(region)}_Transition"
 
-    def lane_of(self, place: Place) -> Lane:
-        """The region itself if it is orthogonal or top-level, or else the one around it that is."""
-        if place.owner is None:
-            return self.lanes[-1]
-        if self.region.state(place.owner).is_orthogonal:
-            return Lane(place.region, place.owner)
-        return self.region.lane(place.owner)
+    def concurrent_around(self, region: RegionId) -> RegionId:
+        """The region itself if it is concurrent, or else the innermost one around it that is."""
+        if region.owner is None or self.region.state(region.owner).is_orthogonal:
+            return region
+        return self.region.concurrent_region(region.owner)
 
-    def inner_lanes(self, lane: Lane) -> tuple[Lane, ...]:
-        """The busy regions inside a top-level or orthogonal region."""
-        return tuple(n for n in self.busy_lanes if n != lane and lane in self.lanes_around(n))
+    def inner_regions(self, region: RegionId) -> tuple[RegionId, ...]:
+        """The busy regions inside a concurrent region."""
+        return tuple(n for n in self.busy_regions if n != region and region in self.enclosing(n))
 
-    def lanes_around(self, lane: Lane) -> list[Lane]:
-        """The region, the orthogonal one that it is inside, and so on to the top."""
-        found = [lane]
+    def enclosing(self, region: RegionId) -> list[RegionId]:
+        """A concurrent region and those around it, innermost first."""
+        found = [region]
         while found[-1].owner is not None:
-            found.append(self.region.lane(found[-1].owner))
+            found.append(self.region.concurrent_region(found[-1].owner))
         return found
 
     @cached_property
@@ -172,19 +170,24 @@ class RegionShape(Places):
     @cached_property
     def watched(self) -> tuple[str, ...]:
         """The orthogonal states in which transitions of one step can conflict."""
-        return tuple(s for s in self.left_states if len(self.lanes_in(s)) > 1)
+        return tuple(s for s in self.left_states if len(self.busy_inside(s)) > 1)
 
-    def lanes_in(self, state: str) -> tuple[Lane, ...]:
+    def busy_inside(self, state: str) -> tuple[RegionId, ...]:
         """The busy regions inside an orthogonal state, in the order of a step."""
         inside = self.region.ancestors
-        return tuple(n for n in self.busy_lanes if n.owner and state in inside(n.owner))
+        return tuple(n for n in self.busy_regions if n.owner and state in inside(n.owner))
 
     # --- steps
 
     @cached_property
     def held(self) -> DottedName:
         """The configuration in the region's own state."""
-        return ref("Self", self.place)
+        return ref("Self", self.configuration_name)
+
+    @cached_property
+    def configuration_param(self) -> Param:
+        """The parameter with a configuration, read."""
+        return Param(self.configuration_name, "in", self.configuration_type)
 
     @cached_property
     def deferring(self) -> bool:
@@ -199,7 +202,7 @@ class RegionShape(Places):
     @cached_property
     def most_firings(self) -> int:
         """The most transitions and segments that one step takes."""
-        return max(1, len(self.busy_lanes)) * (1 + self.most_segments)
+        return max(1, len(self.busy_regions)) * (1 + self.most_segments)
 
     @cached_property
     def most_segments(self) -> int:
@@ -301,28 +304,27 @@ class RegionShape(Places):
     @cached_property
     def memories(self) -> tuple[HistoryMemory, ...]:
         """The regions whose last leaf some history asks for."""
-        found: dict[Place, HistoryMemory] = {}
+        found: dict[RegionId, HistoryMemory] = {}
         for pseudo in self.region.pseudostates:
             if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
-                own = self.compounds.place(pseudo.name)
+                own = self.compounds.region_of(pseudo.name)
                 wanted = [own]
                 if pseudo.kind is PseudoKind.DEEP_HISTORY:
-                    lanes = (Place(n.owner, n.name) for n in self.lanes if n.owner is not None)
-                    wanted += [p for p in lanes if own in self.compounds.places(p.owner or "")]
-                for place in wanted:
-                    label = place.region or place.owner or ""
-                    found[place] = HistoryMemory(place, ada_case(label))
+                    around = self.compounds.regions_around
+                    wanted += [r for r in self.concurrent if r.owner and own in around(r.owner)]
+                for region in wanted:
+                    found[region] = HistoryMemory(region, ada_case(region.label))
         return tuple(found.values())
 
-    def memory(self, place: Place) -> HistoryMemory:
+    def memory(self, region: RegionId) -> HistoryMemory:
         """The memory of a region that has one."""
-        return next(one for one in self.memories if one.place == place)
+        return next(one for one in self.memories if one.region == region)
 
     def memory_type(self, memory: HistoryMemory) -> DottedName:
         """The type of its last leaf."""
-        owner = self.region.state(memory.place.owner or "")
+        owner = self.region.state(memory.region.owner or "")
         if owner.is_orthogonal:
-            return ref(self.states, f"{ada_case(memory.place.region)}_Leaf")
+            return ref(self.states, self.leaves_type(memory.region))
         return ref(self.states, ada_case(owner.name))
 
     # --- occurrences
@@ -384,7 +386,7 @@ class RegionShape(Places):
         whens = (t for t in firing.triggers if isinstance(t, When))
         parts += [emit_expression(scope, when.condition) for when in whens]
         if firing.kind is FiringKind.RESTORE:
-            memory = self.memory(self.compounds.place(firing.sources[0]))
+            memory = self.memory(self.compounds.region_of(firing.sources[0]))
             parts.append(ref("Self.Past", memory.known))
         parts += [emit_expression(scope, guard) for guard in firing.guards]
         if len(firing.sources) > 1:
@@ -394,7 +396,7 @@ class RegionShape(Places):
     def event(self, event: str) -> DottedName:
         """The event as the region's package names it."""
         name = event_literal(event)
-        types = {self.transitions_of(lane).lower() for lane in self.busy_lanes}
+        types = {self.transitions_of(region).lower() for region in self.busy_regions}
         hidden = name.lower() in TYPES or name.lower() in types
         return ref(component_name(self.component), name) if hidden else ref(name)
 
@@ -440,11 +442,11 @@ class RegionShape(Places):
         return plain_args(self.situation, **replaced)
 
     def target_params(self) -> tuple[Param, ...]:
-        """Target looks at the place and the past only when it needs to."""
+        """The configuration and the past, where Target needs them."""
         params = []
         stays = (FiringKind.INTERNAL, FiringKind.DEFERRAL)
         if not self.single or any(f.kind in stays for f in self.firings):
-            params.append(Param(self.place, "in", self.place_type))
+            params.append(self.configuration_param)
         if self.memories:
             params.append(Param("Past", "in", "Memory"))
         return tuple(params)

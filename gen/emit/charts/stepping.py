@@ -22,13 +22,14 @@ from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, Stmt, do
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import expressions_in, flow_operators
+from ravenchart.gen.model.statechart import TOP
 
 from .deferring import take_due
 from .firing import Moves
 from .guards import guard_operators, guards_of
-from .lanes import LIST, fire, lane_step, passing_step
 from .safety import Safety
 from .selection import selectors, whole
+from .several_transitions import LIST, concurrent_step, fire, passing_step
 from .shape import START, RegionShape
 from .working import notice_bodies
 
@@ -120,11 +121,11 @@ def _step(shape: RegionShape, moves: Moves) -> Subprogram:
         return Subprogram("Step", profile, body=_plain_step(shape, moves))
     if shape.single:
         return passing_step(shape, moves, profile)
-    return lane_step(shape, moves, profile)
+    return concurrent_step(shape, moves, profile)
 
 
 def _plain_step(shape: RegionShape, moves: Moves) -> tuple[Stmt, ...]:
-    pick = Assign("Fired", whole(shape, shape.lanes[0]))
+    pick = Assign("Fired", whole(shape, TOP))
     begun = equal(ref("Now"), ref("Start_Of_Region"))
     some = OperatorChain("/=", (ref("Fired"), ref("None")))
     return (

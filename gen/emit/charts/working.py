@@ -22,7 +22,7 @@ from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, Prefix, both,
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, IfStatement, Stmt
-from ravenchart.gen.emit.language.places import conjuncts
+from ravenchart.gen.emit.language.configurations import conjuncts
 
 from .shape import RegionShape
 
@@ -35,7 +35,7 @@ def done_types(shape: RegionShape) -> list[Decl]:
         return []
     flags = tuple(RecordComponent(ada_case(s), "Boolean", FALSE) for s in shape.working)
     return [
-        Comment("Is the do activity of an active state done?"),
+        Comment("For each active state, whether its do activity is done."),
         RecordDeclaration("Done_States", flags),
     ]
 
@@ -56,7 +56,7 @@ def notices(shape: RegionShape, kept: Expr) -> list[Decl]:
         name = f"Notice_{ada_case(state)}"
         items += [
             Subprogram(name, _PARAMS, aspects=(Aspect("Post", kept),)),
-            Comment(f"A do activity of {state} was done in that visit."),
+            Comment(f"Note that a do activity of {state} is done in this visit."),
         ]
     return items
 

@@ -288,7 +288,9 @@ def request_types(system: System, component: Component) -> Iterator[Decl]:
     """For each interface that is served, what can be asked of it."""
     for provided in component.provides:
         if provided.requests:
-            yield Comment(f"[{component.name}.{provided.name}] what can be asked, with arguments")
+            yield Comment(
+                f"[{component.name}.{provided.name}] the requests of callers, with arguments"
+            )
             items: tuple[Decl, ...] = (
                 EnumType("Command", tuple(f"{ada_case(r.name)}_Asked" for r in provided.requests)),
                 RecordDeclaration("Request", _fields(system, provided)),

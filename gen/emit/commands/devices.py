@@ -179,7 +179,7 @@ def simulated_driver(system: System, kind: DeviceType, header: str) -> tuple[Uni
     modulus = OperatorChain("**", (number(2), number(32)))
     items: tuple[Decl, ...] = (
         TypeDeclaration("Call_Count", ModularDefinition(modulus)),
-        Comment("Arguments as they were given last, and replies as they will be given."),
+        Comment("The arguments of the last calls, and the replies of the next ones."),
         RecordDeclaration("State", tuple(kept)),
     )
     spec = Package(device_states_package(system, kind), items, (SPARK,))

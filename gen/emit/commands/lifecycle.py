@@ -77,8 +77,8 @@ def emit_lifecycle(system: System, header: str) -> list[Unit]:
     spec: list[Decl] = [
         Subprogram("Start_All", start),
         Comment(
-            "Initialise and test each device. Where one fails, or where this ends behind the "
-            "first release, Passed is False and all devices are safe."
+            "Initialise and test each device. If one fails, or all this ends after the first "
+            "release, Passed is False and all devices are safe."
         ),
     ]
     steps: list[Stmt] = [Assign("Passed", TRUE)]
@@ -132,11 +132,11 @@ def lifecycle_specs(device: Device) -> tuple[Decl, ...]:
     life = device.type.lifecycle
     items: list[Decl] = [
         Subprogram("Start", (Param("Passed", "out", "Boolean"),)),
-        Comment(f"[{device.name}] before the first release; WCET {life.start:_} ns"),
+        Comment(f"[{device.name}] called before the first release; WCET {life.start:_} ns"),
     ]
     if life.make_safe is not None:
         items.append(Subprogram("Make_Safe"))
-        items.append(Comment(f"[{device.name}] at the end; WCET {life.make_safe:_} ns"))
+        items.append(Comment(f"[{device.name}] called at the end; WCET {life.make_safe:_} ns"))
     return tuple(items)
 
 

@@ -108,7 +108,7 @@ def emit_units(system: System, kind: DeviceType, header: str) -> Iterator[Unit]:
 def _units(system: System, kind: DeviceType, header: str) -> Unit:
     devices = called_devices(system, kind)
     items: list[Decl] = [
-        Comment(f"[{kind.name}] its devices"),
+        Comment(f"[{kind.name}] the devices of this type"),
         EnumType("Unit", tuple(unit_of(device) for device in devices)),
     ]
     for one in kind.parameters:

@@ -93,7 +93,7 @@ def call_objects(system: System, instance: Instance) -> Iterator[Decl]:
     """The calls that wait for replies, and the numbers of those that do not."""
     for remote in remotes(system, instance):
         name = ada_case(remote.need.name)
-        yield Comment(f"[{instance.name}.{remote.need.name}] on another node")
+        yield Comment(f"[{instance.name}.{remote.need.name}] the calls to another node")
         if remote.reply is None:
             last = Attribute(ref(CALLS, "Call_Number"), "Last")
             yield Object(f"{name}_Number", ref(CALLS, "Call_Number"), last)

@@ -58,7 +58,7 @@ def copy_objects(system: System, instance: Instance) -> Iterator[Decl]:
     for read in copies(system, instance):
         assert read.need.reply is not None
         element = f"{instance.name}.{read.need.name}"
-        yield Comment(f"[{element}] of another node")
+        yield Comment(f"[{element}] the last value from another node")
         args = arguments(
             Element_Type=type_name(system, read.need.reply),
             Initial=value(system, read.need.reply, read.initial),
@@ -68,7 +68,7 @@ def copy_objects(system: System, instance: Instance) -> Iterator[Decl]:
         yield GenericInstance(copy_name(read.need), "Ravenchart.Remote_Reads", args)
     for message in published_afar(system, instance):
         if message.every > 1:
-            yield Comment(f"[{message.name}] executions before it is sent")
+            yield Comment(f"[{message.name}] the executions until the message is sent")
             yield Object(_left(message), "Ravenchart.Execution_Count", number(0))
 
 

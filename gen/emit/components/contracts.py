@@ -97,7 +97,7 @@ def kept_types(system: System, component: Component) -> Iterator[Decl]:
             items.append(Comment(f"[{component.name}.{data.name}]"))
             items.append(Subprogram(f"{name}_Is_Kept", params, "Boolean", expression=known))
             items.append(SubtypeDeclaration(name, of_type, aspects=(predicate,)))
-    yield Comment("What is true of data whenever they are read; each writer proves it.")
+    yield Comment("Conditions that hold of data whenever they are read; each writer proves them.")
     yield Package(KEPT, tuple(items))
 
 

@@ -30,8 +30,8 @@ from ravenchart.gen.emit.ada.naming import (
 )
 from ravenchart.gen.emit.ada.statements import Assign, Comment, Stmt
 from ravenchart.gen.emit.commands.device_calls import request_types, serving_params
+from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import event_types, null_event
-from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.language.terms import (
     Scope,
     compared_states,
@@ -49,9 +49,9 @@ from ravenchart.gen.model.system import System
 from .contracts import contract, kept_types, needed_before, used_types
 
 
-def leaf_type(component: Component, region: Region) -> DottedName:
+def published_type(component: Component, region: Region) -> DottedName:
     """The type of a region's published state, seen from a sibling package."""
-    return ref(component_name(component), Places(region).place_type)
+    return ref(component_name(component), Configurations(region).configuration_type)
 
 
 def view_type(component: Component, port: str) -> DottedName:
@@ -69,7 +69,7 @@ def _readings(system: System, component: Component) -> dict[str, DottedName]:
     for port in component.inputs():
         types[port.name.lower()] = view_type(component, port.name)
     for region in component.regions:
-        types[region.name.lower()] = leaf_type(component, region)
+        types[region.name.lower()] = published_type(component, region)
     items: list[tuple[str, Type]] = [(d.name, d.type) for d in component.data]
     items += [(p.name, p.type) for p in component.parameters]
     for name, of_type in items:
@@ -96,10 +96,10 @@ def emit_component(system: System, component: Component, header: str) -> Unit:
     items += request_types(system, component)
     for region in component.regions:
         items.append(Comment(f"[{component.name}.{region.name}.states]"))
-        items.append(Places(region).package_of_states(system.origin))
+        items.append(Configurations(region).package_of_states(system.origin))
     for port in component.inputs():
         name = ada_case(port.name)
-        items.append(Comment(f"[{component.name}.{port.name}] what its readers see"))
+        items.append(Comment(f"[{component.name}.{port.name}] the view that its readers have"))
         items.append(
             GenericInstance(
                 f"{name}_Port",
@@ -188,9 +188,9 @@ def activity_params(system: System, component: Component, activity: Activity) ->
     return tuple(params)
 
 
-def stand_ins(component: Component) -> set[str]:
+def fallbacks(component: Component) -> set[str]:
     """The activities that are the fallback of a command, where nothing provides it."""
-    return {need.stand_in.activity for need in component.needs if need.stand_in is not None}
+    return {need.fallback.activity for need in component.needs if need.fallback is not None}
 
 
 FLOWS = "Flows"
@@ -206,8 +206,8 @@ def activity_package(component: Component, activity: Activity) -> str:
     """
     if activity.flow is not None:
         return FLOWS
-    if activity.name in stand_ins(component):
-        return f"{ada_case(activity.name)}_Stand_In"
+    if activity.name in fallbacks(component):
+        return f"{ada_case(activity.name)}_Fallback"
     return ACTIVITIES
 
 

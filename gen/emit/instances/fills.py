@@ -34,7 +34,9 @@ def fill_specs(site: Site) -> Iterator[Decl]:
     for region in queued_regions(site.instance.component):
         yield Subprogram(read_name(region), _FOUND)
         element = f"{site.instance.name}.{region.name}"
-        yield Comment(f"[{element}.queue] how many events wait; by the main program.")
+        yield Comment(
+            f"[{element}.queue] the number of waiting events; called by the main program."
+        )
 
 
 def fill_bodies(site: Site) -> Iterator[Decl]:

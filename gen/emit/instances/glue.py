@@ -74,10 +74,10 @@ from ravenchart.gen.emit.commands.remote_calls import (
 )
 from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
 from ravenchart.gen.emit.components.contracts import stored_type
-from ravenchart.gen.emit.components.packages import activity_package, leaf_type
+from ravenchart.gen.emit.components.packages import activity_package, published_type
+from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import name_of, name_type, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
-from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
 from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
@@ -172,15 +172,15 @@ class Glue(Site):
         for port in self._connected_inputs():
             items.append(self._put_spec(port))
             items.append(
-                Comment(f"[{self._element(port.name)}.mailbox] by its senders; never blocks.")
+                Comment(f"[{self._element(port.name)}.mailbox] called by senders; never blocks.")
             )
             items += wait_spec(self, port)
         if self.instance.component.events:
             items.append(self._offer_spec())
             items.append(
                 Comment(
-                    f"[{self.instance.name}.events] offer Item to every region that names it; "
-                    "never blocks."
+                    f"[{self.instance.name}.events] offer Item to each region that names the "
+                    "event; never blocks."
                 )
             )
         items += self._command_specs()
@@ -189,7 +189,7 @@ class Glue(Site):
             items.insert(0, UseType(ELEMENT_ID))
         for slot in self._slots():
             items.append(run_spec(ada_case(slot.name), slot))
-            items.append(Comment(f"[{slot.element}] one execution, by its processor alone."))
+            items.append(Comment(f"[{slot.element}] one execution; called by its processor only."))
         return tuple(items)
 
     def _put_spec(self, port: Port) -> Subprogram:
@@ -202,16 +202,18 @@ class Glue(Site):
     def _command_specs(self) -> Iterator[Decl]:
         for provided in self._served():
             yield put_spec(self.instance, provided)
-            yield Comment(f"[{self._element(provided.name)}] by its callers; never blocks.")
+            yield Comment(f"[{self._element(provided.name)}] queue a request; never blocks.")
         for spec, item in published(self.system, self.instance):
             yield spec
-            yield Comment(f"[{self._element(item)}] what was published last.")
+            yield Comment(f"[{self._element(item)}] the value published last.")
         for binding in taken_replies(self.system, self.instance):
             yield take_spec(self.system, binding.need)
-            yield Comment(f"[{self._element(binding.need.name)}] its reply.")
+            yield Comment(f"[{self._element(binding.need.name)}] deliver the reply.")
         for spec, _ in from_afar(self.system, self.instance):
             yield spec
-            yield Comment(f"[{self.instance.name}] from another node; never blocks.")
+            yield Comment(
+                f"[{self.instance.name}] called for messages of another node; never blocks."
+            )
 
     def _served(self) -> tuple[Provided, ...]:
         return tuple(one for one in self.instance.component.provides if one.server is not None)
@@ -357,15 +359,12 @@ class Glue(Site):
         component = self.instance.component
         for region in component.regions:
             name = ada_case(region.name)
-            places = Places(region)
             items.append(Comment(f"[{self._element(region.name)}]"))
             kept = RegionShape(self.system, component, region).kept_as
             items.append(Object(f"{name}_Region", ref(self.component, name, kept)))
-            items.append(
-                self._board(
-                    name, leaf_type(component, region), places.initial(self.component), region.name
-                )
-            )
+            initial = Configurations(region).initial(self.component)
+            of_type = published_type(component, region)
+            items.append(self._board(name, of_type, initial, region.name))
             if region.events():
                 event = ref(self.component, "Event")
                 first = null_event(component)

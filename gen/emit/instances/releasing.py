@@ -28,7 +28,7 @@ def wait_spec(site: Site, port: Port) -> Iterator[Decl]:
     if releases(site, port):
         yield Subprogram(f"Await_{ada_case(port.name)}")
         element = f"{site.instance.name}.{port.name}"
-        yield Comment(f"[{element}] suspends the processor that it releases until a value waits.")
+        yield Comment(f"[{element}] suspend the processor of this port until a value waits.")
         if site.noted:
             yield Subprogram(f"Ask_{ada_case(port.name)}", _ASKED)
 

@@ -37,7 +37,7 @@ from ravenchart.gen.emit.ada.statements import (
     Stmt,
     do,
 )
-from ravenchart.gen.emit.charts.lanes import LIST
+from ravenchart.gen.emit.charts.several_transitions import LIST
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import asked_args, request_objects, served
 from ravenchart.gen.emit.commands.remote_calls import watched
@@ -52,8 +52,8 @@ from ravenchart.gen.emit.components.packages import (
     reading_type,
     send_flag,
 )
+from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import null_event
-from ravenchart.gen.emit.language.places import Places
 from ravenchart.gen.emit.language.terms import names_read
 from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
@@ -181,7 +181,8 @@ class Rows(Site):
         for activity, state in completing:
             visits = ref(f"{name}_Region", shape.visits(state))
             body.append(do(ref(f"{ada_case(activity.name)}_Visit_Board", "Write"), visits))
-        body.append(do(ref(f"{name}_Board", "Write"), ref(f"{name}_Region", shape.place)))
+        held = ref(f"{name}_Region", shape.configuration_name)
+        body.append(do(ref(f"{name}_Board", "Write"), held))
         for data in self.instance.component.data:
             if data.name not in region.writes:
                 continue
@@ -218,8 +219,8 @@ class Rows(Site):
     def _read_command(self, binding: Binding, target: Named) -> Stmt:
         """Read the reply of a required command: of a device, of a task, or of the fallback."""
         need, provider = binding.need, binding.provider
-        if need.stand_in is not None and provider is None:
-            return self._copy_in(need.stand_in.item, target)
+        if need.fallback is not None and provider is None:
+            return self._copy_in(need.fallback.item, target)
         if isinstance(provider, RemoteRead):
             return do(ref(copy_name(need), "Read"), ref(target))
         assert isinstance(provider, Device | Server)
@@ -233,9 +234,9 @@ class Rows(Site):
             Object("Now", ref(package, "Occurrence")),
             Object("Fired", ref(package, LIST if shape.listed else "Selection")),
         ]
-        if len(shape.lanes) > 1 and self._note("State", region.name, "region"):
+        if len(shape.concurrent) > 1 and self._note("State", region.name, "region"):
             states = ref(self.component, shape.states)
-            owners = {t for n in shape.lanes if n.owner for t in shape.compared_types(n.owner)}
+            owners = {t for r in shape.concurrent if r.owner for t in shape.compared_types(r.owner)}
             declarations += [UseType(ref(states, t)) for t in sorted(owners)]
         after = self._after_step(shape, package)
         if not shape.listed and not isinstance(after[0], Pragma):
@@ -316,13 +317,14 @@ class Rows(Site):
     def _report_leaves(self, shape: RegionShape) -> list[Stmt]:
         """The leaf of each region; that of an orthogonal region only while its state is active."""
         found: list[Stmt] = []
-        held = ref(f"{ada_case(shape.region.name)}_Region", shape.place)
-        for lane in reversed(shape.lanes):
-            of_type = ref(self.component, shape.states, shape.lane_type(lane))
-            leaf = call(Attribute(of_type, "Pos"), shape.at(held, lane))
-            note = self._note("State", shape.traced(lane), "region", leaf)
-            if lane.owner is not None and note:
-                note = (IfStatement(((shape.in_state(held, lane.owner, self.component), note),)),)
+        held = ref(f"{ada_case(shape.region.name)}_Region", shape.configuration_name)
+        for region in reversed(shape.concurrent):
+            of_type = ref(self.component, shape.states, shape.leaves_type(region))
+            leaf = call(Attribute(of_type, "Pos"), shape.at(held, region))
+            note = self._note("State", shape.traced(region), "region", leaf)
+            if region.owner is not None and note:
+                active = shape.in_state(held, region.owner, self.component)
+                note = (IfStatement(((active, note),)),)
             found += note
         return found
 
@@ -434,11 +436,11 @@ class Rows(Site):
 
     def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:
         now = f"{ada_case(region.name)}_Now"
-        places = Places(region)
-        declarations.append(Object(now, ref(self.component, places.place_type)))
-        states = ref(self.component, places.states)
-        declarations += [UseType(ref(states, t)) for t in places.compared_types(state)]
-        return places.in_state(now, state, self.component)
+        chart = Configurations(region)
+        declarations.append(Object(now, ref(self.component, chart.configuration_type)))
+        states = ref(self.component, chart.states)
+        declarations += [UseType(ref(states, t)) for t in chart.compared_types(state)]
+        return chart.in_state(now, state, self.component)
 
 
 def _times(count: int) -> ForLoop:

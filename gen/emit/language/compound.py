@@ -16,13 +16,13 @@ from enum import Enum
 from functools import cached_property, lru_cache
 
 from ravenchart.gen.language.terms import Expression, Flow
-from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.statechart import (
+    TOP,
     Completion,
-    Lane,
     PseudoKind,
     Pseudostate,
     Region,
+    RegionId,
     Segment,
     State,
     Transition,
@@ -44,10 +44,6 @@ class FiringKind(Enum):
     INTERNAL = "internal"
     DEFERRAL = "deferral"
     RESTORE = "restore"
-
-
-TOP = Place(None, "")
-"""The top-level region."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,12 +70,12 @@ class Firing:
 
     name: str
     kind: FiringKind
-    lane: Lane
+    region: RegionId
     sources: tuple[str, ...]
     triggers: tuple[Trigger | str, ...]
     """The occurrences that it is for; a string is an event that is deferred."""
     guards: tuple[Expression, ...]
-    domain: Place | None
+    domain: RegionId | None
     """The innermost region that holds all it leaves and enters; None: it moves nothing."""
     effects: tuple[Effect, ...] = ()
     entries: tuple[EntryStep, ...] = ()
@@ -108,78 +104,78 @@ class Compounds:
     def __init__(self, region: Region) -> None:
         self.region = region
         vertices: tuple[State | Pseudostate, ...] = (*region.states, *region.pseudostates)
-        self._placed = {v.name.lower(): Place(v.parent, v.region) for v in vertices}
+        self._regions = {v.name.lower(): RegionId(v.parent, v.region) for v in vertices}
 
     # --- geometry
 
-    def place(self, vertex: str) -> Place:
+    def region_of(self, vertex: str) -> RegionId:
         """The region that a state or pseudostate stands in."""
-        return self._placed[vertex.lower()]
+        return self._regions[vertex.lower()]
 
-    def places(self, vertex: str) -> list[Place]:
+    def regions_around(self, vertex: str) -> list[RegionId]:
         """The regions around a vertex, innermost first."""
-        found = [self.place(vertex)]
+        found = [self.region_of(vertex)]
         while found[-1].owner is not None:
-            found.append(self.place(found[-1].owner))
+            found.append(self.region_of(found[-1].owner))
         return found
 
-    def common(self, vertices: list[str]) -> Place:
+    def common(self, vertices: list[str]) -> RegionId:
         """The innermost region that holds all vertices."""
-        first, *rest = (self.places(v) for v in vertices)
-        return next(p for p in first if all(p in others for others in rest))
+        first, *rest = (self.regions_around(v) for v in vertices)
+        return next(r for r in first if all(r in others for others in rest))
 
-    def below(self, place: Place, vertex: str) -> list[str]:
-        """``vertex`` and the states around it inside ``place``, outermost first."""
+    def below(self, region: RegionId, vertex: str) -> list[str]:
+        """``vertex`` and the states around it inside ``region``, outermost first."""
         path = [vertex]
-        while self.place(path[-1]) != place:
-            owner = self.place(path[-1]).owner
+        while self.region_of(path[-1]) != region:
+            owner = self.region_of(path[-1]).owner
             assert owner is not None
             path.append(owner)
         return path[::-1]
 
-    def passed(self, place: Place) -> tuple[str, ...]:
+    def passed(self, region: RegionId) -> tuple[str, ...]:
         """The pseudostates of a region that a step passes as leaves."""
         return tuple(
             p.name
             for p in self.region.pseudostates
-            if (p.kind in PASSED and self.place(p.name) == place)
-            or (p.kind is PseudoKind.TERMINATE and place == TOP)
+            if (p.kind in PASSED and self.region_of(p.name) == region)
+            or (p.kind is PseudoKind.TERMINATE and region == TOP)
         )
 
     # --- entries
 
-    def default(self, place: Place) -> tuple[EntryStep, ...]:
+    def default(self, region: RegionId) -> tuple[EntryStep, ...]:
         """Default entry of a region: its initial effect, then its initial state."""
-        if place.owner is None:
+        if region.owner is None:
             label, initial = self.region.name, self.region.initial
         else:
-            label = place.region or place.owner
-            initial = self.region.state(place.owner).nested(place.region).initial
+            label = region.label
+            initial = self.region.state(region.owner).nested(region.name).initial
         effect = (Effect(f"initial({label})", initial.effect),) if initial.effect else ()
-        return (*effect, *self.into(place, [initial.target]))
+        return (*effect, *self.into(region, [initial.target]))
 
     def into(
-        self, place: Place, targets: list[str], effects: dict[str, Effect] | None = None
+        self, region: RegionId, targets: list[str], effects: dict[str, Effect] | None = None
     ) -> tuple[EntryStep, ...]:
-        """Entry from ``place`` down to ``targets``; each one's effect runs before its region."""
-        top = self.below(place, targets[0])[0]
+        """Entry from ``region`` down to ``targets``; each one's effect runs before its region."""
+        top = self.below(region, targets[0])[0]
         if self.region.pseudostate(top) is not None:
             return (Enter(top),)
         inner = [t for t in targets if t != top]
-        regions = (Place(top, r.name) for r in self.region.state(top).regions)
+        regions = self.region.state(top).region_ids
         nested = [self._nested(r, inner, effects or {}) for r in regions]
         return (Enter(top), *(step for steps in nested for step in steps))
 
     def _nested(
-        self, place: Place, targets: list[str], effects: dict[str, Effect]
+        self, region: RegionId, targets: list[str], effects: dict[str, Effect]
     ) -> tuple[EntryStep, ...]:
-        here = [t for t in targets if place in self.places(t)]
+        here = [t for t in targets if region in self.regions_around(t)]
         if not here:
-            return self.default(place)
+            return self.default(region)
         if len(here) > 1:
-            return self.into(place, here, effects)
+            return self.into(region, here, effects)
         before = (effects[here[0]],) if here[0] in effects else ()
-        return (*before, *self.into(place, here))
+        return (*before, *self.into(region, here))
 
     # --- the lines of the declared chart
 
@@ -187,26 +183,26 @@ class Compounds:
     def firings(self) -> tuple[Firing, ...]:
         """All lines of the chart by region, inner ones first, in each in order of precedence."""
         found: list[Firing] = []
-        for lane in self.region.lanes():
-            lines = self._lines(lane)
+        for region in self.region.concurrent_regions():
+            lines = self._lines(region)
             lines.sort(key=lambda f: -max(len(self.region.ancestors(s)) for s in f.sources))
             found += lines
         return tuple(found)
 
-    def _lines(self, lane: Lane) -> list[Firing]:
+    def _lines(self, region: RegionId) -> list[Firing]:
         lines: list[Firing] = []
         for transition in self.region.transitions:
             if isinstance(transition.trigger, Segment):
                 continue
-            if self.region.lane(transition.source) == lane:
-                lines += self._paths((transition,), lane)
+            if self.region.concurrent_region(transition.source) == region:
+                lines += self._paths((transition,), region)
         for state in self.region.states:
-            if self.region.lane(state.name) == lane:
+            if self.region.concurrent_region(state.name) == region:
                 lines += [
                     Firing(
                         f"Defer_{e}_In_{state.name}",
                         FiringKind.DEFERRAL,
-                        lane,
+                        region,
                         (state.name,),
                         (e,),
                         (),
@@ -217,11 +213,11 @@ class Compounds:
                     for e in state.defers
                 ]
         for pseudo in self.region.pseudostates:
-            if self.region.lane(pseudo.name) == lane and pseudo.kind in PASSED:
-                lines += self._passing(pseudo, lane)
+            if self.region.concurrent_region(pseudo.name) == region and pseudo.kind in PASSED:
+                lines += self._passing(pseudo, region)
         return lines
 
-    def _passing(self, pseudo: Pseudostate, lane: Lane) -> list[Firing]:
+    def _passing(self, pseudo: Pseudostate, region: RegionId) -> list[Firing]:
         name, kind = pseudo.name, pseudo.kind
         lines: list[Firing] = []
         if kind is not PseudoKind.CHOICE:
@@ -229,11 +225,11 @@ class Compounds:
                 Firing(
                     f"Restore_{name}",
                     FiringKind.RESTORE,
-                    lane,
+                    region,
                     (name,),
                     (Segment(),),
                     (),
-                    self.place(name),
+                    self.region_of(name),
                     goal=name,
                     origins=(pseudo.origin,),
                     vertex=name,
@@ -241,19 +237,19 @@ class Compounds:
             )
         out = self.region.outgoing(name)
         for segment in out:
-            lines += self._paths((segment,), lane)
+            lines += self._paths((segment,), region)
         if kind is not PseudoKind.CHOICE and not out:
-            place = self.place(name)
-            entries = self.default(place)
+            domain = self.region_of(name)
+            entries = self.default(domain)
             lines.append(
                 Firing(
                     f"Default_Of_{name}",
                     FiringKind.MOVE,
-                    lane,
+                    region,
                     (name,),
                     (Segment(),),
                     (),
-                    place,
+                    domain,
                     (),
                     entries,
                     origins=(pseudo.origin,),
@@ -262,22 +258,22 @@ class Compounds:
             )
         return lines
 
-    def _paths(self, so_far: tuple[Transition, ...], lane: Lane) -> list[Firing]:
+    def _paths(self, so_far: tuple[Transition, ...], region: RegionId) -> list[Firing]:
         last = so_far[-1]
         pseudo = self.region.pseudostate(last.target)
         if pseudo is not None and pseudo.kind is PseudoKind.JUNCTION:
             ways = self.region.outgoing(pseudo.name)
-            return [f for way in ways for f in self._paths((*so_far, way), lane)]
+            return [f for way in ways for f in self._paths((*so_far, way), region)]
         if pseudo is not None and pseudo.kind is PseudoKind.JOIN:
-            return self._joined(so_far, pseudo.name, lane)
-        return [self._firing(so_far, (so_far[0],), lane)]
+            return self._joined(so_far, pseudo.name, region)
+        return [self._firing(so_far, (so_far[0],), region)]
 
-    def _joined(self, so_far: tuple[Transition, ...], join: str, lane: Lane) -> list[Firing]:
+    def _joined(self, so_far: tuple[Transition, ...], join: str, region: RegionId) -> list[Firing]:
         incoming = tuple(t for t in self.region.transitions if t.target == join)
         if so_far[0] != incoming[0]:
             return []
         (out,) = self.region.outgoing(join)
-        return [self._firing((*incoming, *path), incoming, lane) for path in self._beyond((out,))]
+        return [self._firing((*incoming, *path), incoming, region) for path in self._beyond((out,))]
 
     def _beyond(self, so_far: tuple[Transition, ...]) -> list[tuple[Transition, ...]]:
         """The ways on from a segment through junctions."""
@@ -288,7 +284,7 @@ class Compounds:
         return [p for way in ways for p in self._beyond((*so_far, way))]
 
     def _firing(
-        self, path: tuple[Transition, ...], first: tuple[Transition, ...], lane: Lane
+        self, path: tuple[Transition, ...], first: tuple[Transition, ...], region: RegionId
     ) -> Firing:
         main, last = path[0], path[-1]
         named = [main, *(t for t in path[1:] if t not in first)]
@@ -304,7 +300,7 @@ class Compounds:
             return Firing(
                 name,
                 FiringKind.INTERNAL,
-                lane,
+                region,
                 sources,
                 triggers,
                 guards,
@@ -326,7 +322,7 @@ class Compounds:
         return Firing(
             name,
             FiringKind.MOVE,
-            lane,
+            region,
             sources,
             triggers,
             guards,
@@ -337,9 +333,9 @@ class Compounds:
             origins,
         )
 
-    def _domain(self, main: Transition, sources: tuple[str, ...], targets: list[str]) -> Place:
+    def _domain(self, main: Transition, sources: tuple[str, ...], targets: list[str]) -> RegionId:
         if main.kind is TransitionKind.LOCAL:
-            return next(p for p in self.places(targets[0]) if p.owner == main.source)
+            return next(r for r in self.regions_around(targets[0]) if r.owner == main.source)
         return self.common([*sources, *targets])
 
     # --- conflicts
@@ -348,8 +344,8 @@ class Compounds:
         """The orthogonal states that a line leaves from inside, innermost first."""
         if firing.domain is None:
             return ()
-        around = self.places(firing.sources[0])
+        around = self.regions_around(firing.sources[0])
         if firing.domain not in around:
             return ()
-        owners = [p.owner for p in around[: around.index(firing.domain)]]
+        owners = [r.owner for r in around[: around.index(firing.domain)]]
         return tuple(o for o in owners if o is not None and self.region.state(o).is_orthogonal)

@@ -38,7 +38,7 @@ IN_NODES = frozenset((_EVERYWHERE + _NODES).split())
 IN_EVENTS = frozenset((_EVERYWHERE + _EVENTS).split())
 """Those of a component's package, and of units below it, that stand beside its events."""
 
-IN_LANES = frozenset(("node", "none", "selection", "top"))
+BESIDE_REGIONS = frozenset(("node", "none", "selection", "top"))
 """Those that records with a field for each orthogonal region need to see beside their fields."""
 
 
@@ -62,9 +62,9 @@ def event_literal(name: str) -> str:
     return _apart(name, IN_EVENTS, "Event")
 
 
-def lane_name(name: str) -> str:
-    """A region of an orthogonal state as the fields of such records name it."""
-    return _apart(name, IN_LANES, "Region")
+def region_label(name: str) -> str:
+    """An orthogonal region as the fields of such records name it."""
+    return _apart(name, BESIDE_REGIONS, "Region")
 
 
 def _apart(name: str, taken: Set[str], kind: str) -> str:

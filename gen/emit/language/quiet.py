@@ -22,11 +22,10 @@ from ravenchart.gen.emit.ada.statements import Pragma
 from ravenchart.gen.emit.ada.walking import nodes_in
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.language.narrowing import COMPARISONS
-from ravenchart.gen.model.chart.tree import Place
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.statechart import Region, When
 
-from .places import Places
+from .configurations import Configurations
 from .terms import expressions_in
 
 _DECIDED = "can * be"
@@ -47,13 +46,13 @@ class DecidedStates:
         self._composites: set[DottedName] = set()
         for component in components:
             for region in component.regions:
-                self._add(component, Places(region))
+                self._add(component, Configurations(region))
 
-    def _add(self, component: Component, places: Places) -> None:
-        lanes = [places.literals(lane) for lane in places.lanes]
-        single = [leaves[0] for leaves in lanes if len(leaves) == 1]
-        for own, found in ((self._literals, single), (self._composites, _whole(places, lanes))):
-            own.update(places.literal(name, component_name(component)) for name in found)
+    def _add(self, component: Component, chart: Configurations) -> None:
+        leaves = [chart.literals(region) for region in chart.concurrent]
+        single = [own[0] for own in leaves if len(own) == 1]
+        for known, found in ((self._literals, single), (self._composites, _whole(chart, leaves))):
+            known.update(chart.literal(name, component_name(component)) for name in found)
 
     def words(self, unit: Unit, component: Component | None) -> Iterator[str]:
         """The warnings on the states that a unit tests for."""
@@ -70,15 +69,10 @@ class DecidedStates:
                         yield _MEMBERSHIP
 
 
-def _whole(places: Places, lanes: Sequence[tuple[str, ...]]) -> list[str]:
-    """The composites that hold all the leaves of a top-level or orthogonal region."""
-    found = []
-    for state in places.region.states:
-        if len(state.regions) == 1:
-            leaves = tuple(places.literals_in(Place(state.name, state.regions[0].name)))
-            if leaves in lanes:
-                found.append(state.name)
-    return found
+def _whole(chart: Configurations, leaves: Sequence[tuple[str, ...]]) -> list[str]:
+    """The composites that hold all the leaves of a concurrent region."""
+    composites = (state for state in chart.region.states if len(state.regions) == 1)
+    return [s.name for s in composites if chart.literals(s.region_ids[0]) in leaves]
 
 
 def quiet(unit: Unit, words: Iterator[str]) -> Unit:
@@ -106,7 +100,7 @@ def warnings_of(expressions: Iterable[m.Expression], *, by_name: bool = False) -
 
 def warnings_of_idle(region: Region) -> Iterator[str]:
     """The warnings in the spec of a region without transitions."""
-    if not Places(region).compounds.firings:
+    if not Configurations(region).compounds.firings:
         yield from (_DECIDED, _COMPUTED, _IDLE)
 
 

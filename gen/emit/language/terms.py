@@ -29,8 +29,8 @@ from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 
+from .configurations import Configurations
 from .events import field_of
-from .places import Places
 
 _CHAINS = {"and": "and then", "or": "or else"}
 _FUNCTIONS = {"min": "Min", "max": "Max"}
@@ -40,7 +40,7 @@ FRESHNESS = ref("Ravenchart.Freshness")
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """How names read in one place of the generated program.
+    """How names read at one point of the generated program.
 
     ``variable`` gives a data item, parameter or port view, ``target`` a data
     item to be set, ``sent`` the slot of an output port, ``raised`` the
@@ -93,10 +93,10 @@ def compared_states(component: Component, expressions: Iterable[m.Expression]) -
     """The types of states that expressions compare, seen from the component's package."""
     asked = {pair for e in expressions for pair in states_in(e)}
     return {
-        ref(places.states, kind)
+        ref(chart.states, kind)
         for name, state in asked
-        for places in (Places(component.region(name)),)
-        for kind in places.compared_types(state)
+        for chart in (Configurations(component.region(name)),)
+        for kind in chart.compared_types(state)
     }
 
 
@@ -201,7 +201,7 @@ def certain_sends(flow: m.Flow) -> set[str]:
 
 
 def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = None) -> Expr:
-    """One model expression as Ada; ``unit`` is what its place counts, for bare numbers."""
+    """One model expression as Ada; ``unit`` is the unit that bare numbers have there."""
     match expression:
         case m.Literal(value, of_type):
             return _literal(scope, value, of_type, unit)
@@ -240,8 +240,8 @@ def _name(scope: Scope, name: m.Name) -> DottedName:
 
 
 def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
-    places = Places(scope.component.region(region_name))
-    return places.in_state(scope.variable(region_name), state)
+    chart = Configurations(scope.component.region(region_name))
+    return chart.in_state(scope.variable(region_name), state)
 
 
 def _operation(scope: Scope, operation: m.Operation, place: str | None) -> Expr:

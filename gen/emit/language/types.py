@@ -47,7 +47,7 @@ def emit_root(system: System, header: str) -> Unit:
     """``package <System>``: pure, and visible from every other unit."""
     items: list[Decl] = []
     for unit in system.units:
-        items.append(Comment(f"All values counted in {unit}."))
+        items.append(Comment(f"Values are counted in {unit}."))
         items.append(TypeDeclaration(unit_type(system, unit).last, DerivedDefinition(NUMBER)))
     scalars = [t for t in system.types if not isinstance(t, RecordType)]
     records = [t for t in system.types if isinstance(t, RecordType)]

@@ -142,7 +142,7 @@ def _recording(system: System, header: str) -> Unit:
     package = Package(
         ref(root_package(system), UNIT),
         (
-            Comment("Numbers of the recorded values; trace.json has their names and places."),
+            Comment("Numbers of the recorded values; trace.json has their names and locations."),
             *numbers,
             GenericInstance("Values", BUFFERS, args),
         ),
@@ -170,7 +170,7 @@ def _probe(system: System, node: Node, header: str) -> Unit:
 
 def _elements(system: System, header: str) -> Unit:
     items: list[Decl] = [
-        Comment("Numbers of the model's elements; trace.json has their names and places.")
+        Comment("Numbers of the model's elements; trace.json has their names and locations.")
     ]
     for item in elements(system):
         if item.kind != VALUE:
@@ -192,7 +192,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     offset = fact(processor.name, "O") if shifted else number(0)
     rows = tuple(row_name(s) for s in processor.slots)
     items: list[Decl] = [
-        Comment(f"[{processor.name}.table] the activities, in the order in which they run"),
+        Comment(f"[{processor.name}.table] the activities, in the order of execution"),
         EnumType("Row", rows),
         Subprogram("Execute", (Param("Item", "in", "Row"),)),
         Subprogram("On_Deadline_Miss"),
@@ -349,7 +349,7 @@ def _budgets(processor: Processor) -> list[Decl]:
     return [
         Subprogram("On_Executed", _EXECUTED),
         TypeDeclaration("Row_Budgets", ArrayDefinition("Row", "Ravenchart.Nanoseconds")),
-        Comment(f"[{processor.name}.table] the longest that each activity may take"),
+        Comment(f"[{processor.name}.table] the enforced limit of each activity's execution time"),
         Object("Budgets", "Row_Budgets", Aggregate(rows), constant=True),
     ]
 

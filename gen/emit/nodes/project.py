@@ -20,7 +20,7 @@ with "ravenchart.gpr";
 project {name} is
 
    Build := external ("RAVENCHART_BUILD", "{up}build");
-   --  Where objects and the program go, apart for each mode.
+   --  The folder of objects and program; each mode has one of its own.
 
 {sources}   for Object_Dir use Build & "/" & Ravenchart.Mode;
    for Create_Missing_Dirs use "True";
@@ -32,9 +32,9 @@ project {name} is
    case Run_Time is
       when "full" =>
          Cases := ("-fno-jump-tables");
-         --  A case of a chart compares: that is quicker on a large processor.
+         --  Cases compare values, which is faster on a large processor.
       when "light" =>
-         --  On a small one tables of addresses are shorter.
+         --  Jump tables are shorter, which counts on a small processor.
          null;
    end case;
 
@@ -54,8 +54,8 @@ _CHOSEN = """\
    type Register_Kind is ("simulated", "hardware");
    Registers : Register_Kind :=
      external ("RAVENCHART_REGISTERS", "simulated");
-   --  What drivers reach: simulated registers, or those at the addresses of
-   --  the model.
+   --  The registers that drivers access: simulated ones, or those at the
+   --  addresses of the model.
 
    Folders :=
      {folders};
@@ -100,7 +100,7 @@ with "ravenchart.gpr";
 project {name}_Simulation is
 
    User := external_as_list ("RAVENCHART_USER", ",");
-   --  Where the sources are that the user writes, if there are any.
+   --  The folders of the user's sources, if there are any.
 
    for Source_Dirs use
      ("../source", Ravenchart'Project_Dir & "spark_runtime/simulated") & User;

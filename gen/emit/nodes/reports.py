@@ -66,7 +66,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     spec: list[Decl] = []
     bodies: list[Decl] = []
     if traced(system):
-        spec += [Subprogram("Drain_Trace"), Comment("Hand what was traced to the host.")]
+        spec += [Subprogram("Drain_Trace"), Comment("Hand the trace to the host.")]
         bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     bodies += [_report(system, p) for p in system.processors]

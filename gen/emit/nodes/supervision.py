@@ -104,9 +104,9 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
         Comment(f"[{node.name}] the processors, the most urgent first"),
         EnumType("Watched", tuple(_literal(p) for p in watched)),
         Subprogram("Look", look),
-        Comment("Has a release not completed by its deadline and the margin?"),
+        Comment("Set Is_Silent when a release has not completed by its deadline plus the margin."),
         Subprogram("On_Silence", (Param("Item", "in", "Watched"),)),
-        Comment("It has not: count it, raise its events, and shut down."),
+        Comment("Count the silence, raise the events of the processor, and shut down."),
         *_given_up(system),
         Comment(f"[{element}]"),
         GenericInstance("Supervisor", "Ravenchart.Supervisors", args),
@@ -153,7 +153,7 @@ def _supervisor(system: System, node: Node, header: str) -> list[Unit]:
 
 def _given_up(system: System) -> tuple[Decl, ...]:
     """The spec of what ends the program in place of the main program, where devices need it."""
-    text = "The main program has not ended the controller: make its devices safe, and end it."
+    text = "Make the devices safe and end the controller: the main program has not ended it."
     return (Subprogram("Give_Up"), Comment(text)) if ends_devices(system) else ()
 
 

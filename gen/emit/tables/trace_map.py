@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Element ids: numbers in the generated program, names and places in trace.json.
+"""Element ids: numbers in the generated program, names and locations in trace.json.
 
 The numbers follow model order. The rows of a processor follow its own number
 directly, so that row k of the table is the processor's number + 1 + k; the
@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.model.commands import RemoteRead
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -78,14 +78,14 @@ def elements(system: System) -> tuple[MappedElement, ...]:
         for event in component.events:
             add(f"{instance.name}.{event.name}", "event", event.origin)
         for region in component.regions:
-            places = Places(region)
-            for lane in reversed(places.lanes):
-                fired = () if lane.owner else tuple(f.name for f in places.compounds.firings)
+            chart = Configurations(region)
+            for one in reversed(chart.concurrent):
+                fired = () if one.owner else tuple(f.name for f in chart.compounds.firings)
                 add(
-                    f"{instance.name}.{places.traced(lane)}",
+                    f"{instance.name}.{chart.traced(one)}",
                     "region",
                     region.origin,
-                    leaves=places.literals(lane),
+                    leaves=chart.literals(one),
                     transitions=fired,
                 )
     for message in system.messages:
@@ -126,7 +126,7 @@ def trace_json(system: System) -> str:
             "id": item.number,
             "element": item.element,
             "kind": item.kind,
-            "origin": _place(item.origin, system.origin),
+            "origin": _location(item.origin, system.origin),
         }
         if item.kind == "region":
             row |= {"leaves": item.leaves, "transitions": item.transitions}
@@ -141,6 +141,6 @@ def trace_json(system: System) -> str:
     return json.dumps(document, indent=1, ensure_ascii=True) + "\n"
 
 
-def _place(origin: Origin, model: Origin) -> str:
+def _location(origin: Origin, model: Origin) -> str:
     """Where an element stands, from the model's folder: the same wherever that is."""
     return f"{origin.beside(model)}:{origin.column}"

@@ -14,9 +14,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from ravenchart.gen.model.statechart import Completion, PseudoKind, Transition, TransitionKind
+from ravenchart.gen.model.statechart import (
+    TOP,
+    Completion,
+    PseudoKind,
+    RegionId,
+    Transition,
+    TransitionKind,
+)
 
-from .tree import Place, Tree, Way
+from .tree import Tree, Way
 
 CanComplete = Callable[[str], bool]
 """Whether the do activities of a state, when it has any, can end."""
@@ -32,7 +39,7 @@ class Reach:
 
     def __post_init__(self) -> None:
         """Follow everything until nothing is new."""
-        self.found |= self._entered(Place(None, ""), ())
+        self.found |= self._entered(TOP, ())
         left = list(self.tree.region.transitions)
         while True:
             size = len(self.found)
@@ -60,11 +67,11 @@ class Reach:
     def completes(self, state: str) -> bool:
         """Whether a state can complete: all its regions can end, and its do activities."""
         regions = self.tree.regions(state)
-        return self.ends(state) and all(self.has_final(place) for place in regions)
+        return self.ends(state) and all(self.has_final(region) for region in regions)
 
-    def has_final(self, place: Place) -> bool:
+    def has_final(self, region: RegionId) -> bool:
         """Whether a final state directly in a region is reached."""
-        inside = self.tree.content.get(place, ())
+        inside = self.tree.content.get(region, ())
         return any(state.final and state.name in self.found for state in inside)
 
     def after(self, transition: Transition) -> set[str]:
@@ -92,22 +99,22 @@ class Reach:
             entered |= self._restored(way.target)
         return entered
 
-    def _entered(self, place: Place, targets: tuple[str, ...]) -> set[str]:
-        entries = self.tree.entries(place, targets)
+    def _entered(self, region: RegionId, targets: tuple[str, ...]) -> set[str]:
+        entries = self.tree.entries(region, targets)
         states = {entry.state for entry in entries if entry.state is not None}
         return states | {target for target in targets if target in self.tree.states}
 
     def _restored(self, history: str) -> set[str]:
         """The states that a history may enter, beside its default transition."""
-        place = self.tree.place(history)
+        region = self.tree.region_of(history)
         found: set[str] = set()
         if not self.tree.outgoing.get(history):
-            found |= self._entered(place, ())
-        below = [s for s in self.tree.states if s in self.found and self.tree.child(place, s)]
+            found |= self._entered(region, ())
+        below = [s for s in self.tree.states if s in self.found and self.tree.child(region, s)]
         if self.tree.kind(history) is PseudoKind.HISTORY:
             for state in below:
-                if self.tree.place(state) == place:
-                    found |= self._entered(place, (state,))
+                if self.tree.region_of(state) == region:
+                    found |= self._entered(region, (state,))
             return found
         for state in below:
             found.add(state)
@@ -139,9 +146,9 @@ class Reach:
 
     def _beside(self, outer: str, state: str) -> Iterator[str]:
         """The states that may be active in the other regions of an orthogonal state."""
-        for place in self.tree.regions(outer):
-            if self.tree.child(place, state) is None:
-                yield from (s.name for s in self.tree.content[place] if s.name in self.found)
+        for region in self.tree.regions(outer):
+            if self.tree.child(region, state) is None:
+                yield from (s.name for s in self.tree.content[region] if s.name in self.found)
 
     def leading_to(self, state: str) -> set[str]:
         """The vertices from which some way leads to a state, or that are in it."""

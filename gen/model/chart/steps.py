@@ -15,10 +15,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ravenchart.gen.language.terms import Flow, If, Raise, Send
-from ravenchart.gen.model.statechart import OnEvent, PseudoKind, Region, Transition, When
+from ravenchart.gen.model.statechart import (
+    TOP,
+    OnEvent,
+    PseudoKind,
+    Region,
+    RegionId,
+    Transition,
+    When,
+)
 from ravenchart.gen.origins import Origin
 
-from .tree import Place, Tree, Way, is_segment
+from .tree import Tree, Way, is_segment
 
 RAISED = ""
 """Stands for all events in a `Tally`: no port has this name."""
@@ -76,18 +84,18 @@ class Steps:
 
     def leaving(self, state: str) -> Tally:
         """Exits of a state and of whatever is active inside."""
-        inside = [self.leaving_place(place) for place in self.tree.regions(state)]
+        inside = [self.leaving_region(region) for region in self.tree.regions(state)]
         return then((*inside, tally(self.tree.states[state].exit)))
 
-    def leaving_place(self, place: Place) -> Tally:
+    def leaving_region(self, region: RegionId) -> Tally:
         """Exits of whatever is active in a region."""
-        return either(self.leaving(state.name) for state in self.tree.content.get(place, ()))
+        return either(self.leaving(state.name) for state in self.tree.content.get(region, ()))
 
-    def entering(self, place: Place, targets: tuple[str, ...]) -> Tally:
+    def entering(self, region: RegionId, targets: tuple[str, ...]) -> Tally:
         """Entries into a region on the way to targets, or by default."""
-        return then(tally(entry.flow) for entry in self.tree.entries(place, targets))
+        return then(tally(entry.flow) for entry in self.tree.entries(region, targets))
 
-    def restoring(self, place: Place) -> Tally:
+    def restoring(self, region: RegionId) -> Tally:
         """Entries of whatever a history may restore in a region."""
         return either(
             then(
@@ -99,14 +107,14 @@ class Steps:
                     ),
                 )
             )
-            for state in self.tree.content.get(place, ())
+            for state in self.tree.content.get(region, ())
         )
 
     # --- transitions
 
     def start(self) -> Tally:
         """The first step."""
-        return self.entering(Place(None, ""), ())
+        return self.entering(TOP, ())
 
     def firing(self, transition: Transition) -> Tally:
         """A transition with everything that follows from it."""
@@ -134,7 +142,7 @@ class Steps:
         """The worst of the exits on a way."""
         if way.left is None:
             is_local = way.domain.owner == way.path[0].source
-            return self.leaving_place(way.domain) if is_local else {}
+            return self.leaving_region(way.domain) if is_local else {}
         source = way.source
         chain = (source, *self.tree.above(source))
         parts: list[Tally] = []
@@ -144,15 +152,15 @@ class Steps:
                 below = state
                 continue
             beside = [
-                p for p in self.tree.regions(state) if below is None or not self._in(p, below)
+                r for r in self.tree.regions(state) if below is None or not self._in(r, below)
             ]
-            parts += [self.leaving_place(place) for place in beside]
+            parts += [self.leaving_region(region) for region in beside]
             parts.append(tally(self.tree.states[state].exit))
             below = state
         return then(parts)
 
-    def _in(self, place: Place, vertex: str) -> bool:
-        return self.tree.child(place, vertex) is not None
+    def _in(self, region: RegionId, vertex: str) -> bool:
+        return self.tree.child(region, vertex) is not None
 
     def _onward(self, target: str) -> Tally:
         """The sends and raises behind a choice or history in the same step."""
@@ -160,12 +168,12 @@ class Steps:
             case PseudoKind.CHOICE:
                 return self._behind[target]
             case PseudoKind.HISTORY | PseudoKind.DEEP_HISTORY:
-                place = self.tree.place(target)
-                default = [self.entering(place, ())]
+                region = self.tree.region_of(target)
+                default = [self.entering(region, ())]
                 for segment in self.tree.outgoing.get(target, ()):
                     effect = tally(segment.effect)
-                    default = [then((effect, self.entering(place, (segment.target,))))]
-                return either((self.restoring(place), *default))
+                    default = [then((effect, self.entering(region, (segment.target,))))]
+                return either((self.restoring(region), *default))
         return {}
 
     @cached_property
@@ -187,22 +195,21 @@ class Steps:
 
     def together(self, transitions: Sequence[Transition]) -> Tally:
         """The worst step for one occurrence that enables these transitions."""
-        by_lane: dict[Place, list[Transition]] = {}
+        by_region: dict[RegionId, list[Transition]] = {}
         for transition in transitions:
-            by_lane.setdefault(self._lane(transition.source), []).append(transition)
-        return either(self._in_lane(Place(None, ""), by_lane).values())
+            around = self.region.concurrent_region(transition.source)
+            by_region.setdefault(around, []).append(transition)
+        return either(self._in_region(TOP, by_region).values())
 
-    def _lane(self, vertex: str) -> Place:
-        around = self.tree.places(vertex)
-        return next(p for p in around if p.owner is None or self.tree.is_orthogonal(p.owner))
-
-    def _in_lane(self, lane: Place, by_lane: dict[Place, list[Transition]]) -> dict[int, Tally]:
+    def _in_region(
+        self, region: RegionId, by_region: dict[RegionId, list[Transition]]
+    ) -> dict[int, Tally]:
         """The worst inside a region, by the number of orthogonal states around it that are left."""
         options: dict[int, list[Tally]] = {}
-        for transition in by_lane.get(lane, ()):
+        for transition in by_region.get(region, ()):
             options.setdefault(self.lost(transition), []).append(self.firing(transition))
-        for state in self._orthogonal[lane]:
-            inner = [self._in_lane(place, by_lane) for place in self.tree.regions(state)]
+        for state in self._orthogonal[region]:
+            inner = [self._in_region(nested, by_region) for nested in self.tree.regions(state)]
             options.setdefault(0, []).append(then(one.get(0, {}) for one in inner))
             for one in inner:
                 for lost, worst in one.items():
@@ -211,14 +218,14 @@ class Steps:
         return {lost: either(worst) for lost, worst in options.items()}
 
     @cached_property
-    def _orthogonal(self) -> dict[Place, list[str]]:
+    def _orthogonal(self) -> dict[RegionId, list[str]]:
         """The orthogonal states in each top-level or orthogonal region."""
-        found: dict[Place, list[str]] = {Place(None, ""): []}
+        found: dict[RegionId, list[str]] = {TOP: []}
         for state in self.region.states:
             if state.is_orthogonal:
-                found.setdefault(self._lane(state.name), []).append(state.name)
-                for place in self.tree.regions(state.name):
-                    found.setdefault(place, [])
+                found.setdefault(self.region.concurrent_region(state.name), []).append(state.name)
+                for region in self.tree.regions(state.name):
+                    found.setdefault(region, [])
         return found
 
     def single(self) -> Iterator[tuple[str, Tally]]:

@@ -3,8 +3,7 @@
 
 """The tree of a chart: the region of each vertex, and the states between two vertices.
 
-A `Place` is a region of the chart: the top-level region is ``(None, "")``, a
-nested one ``(state, name)``. Everything is looked up, nothing is searched for.
+Everything is looked up, nothing is searched for.
 """
 
 from __future__ import annotations
@@ -20,19 +19,13 @@ from ravenchart.gen.model.statechart import (
     PseudoKind,
     Pseudostate,
     Region,
+    RegionId,
     Segment,
     State,
     Transition,
     TransitionKind,
 )
 from ravenchart.gen.origins import Origin
-
-
-class Place(NamedTuple):
-    """A region of the chart, by the state around it and its own name."""
-
-    owner: str | None
-    region: str
 
 
 class EntryFlow(NamedTuple):
@@ -68,48 +61,48 @@ class Tree:
         """Where it is declared."""
         return (self.pseudostates.get(vertex) or self.states[vertex]).origin
 
-    def place(self, vertex: str) -> Place:
+    def region_of(self, vertex: str) -> RegionId:
         """The region that a vertex stands in."""
         found = self.pseudostates.get(vertex) or self.states[vertex]
-        return Place(found.parent, found.region)
+        return RegionId(found.parent, found.region)
 
     @cached_property
-    def content(self) -> Mapping[Place, tuple[State, ...]]:
+    def content(self) -> Mapping[RegionId, tuple[State, ...]]:
         """The states that stand directly in each region, in model order."""
-        found: dict[Place, list[State]] = {}
+        found: dict[RegionId, list[State]] = {}
         for state in self.region.states:
-            found.setdefault(self.place(state.name), []).append(state)
-        return {place: tuple(states) for place, states in found.items()}
+            found.setdefault(self.region_of(state.name), []).append(state)
+        return {region: tuple(states) for region, states in found.items()}
 
-    def initial(self, place: Place) -> Initial:
+    def initial(self, region: RegionId) -> Initial:
         """Where a region begins."""
-        if place.owner is None:
+        if region.owner is None:
             return self.region.initial
-        return self.states[place.owner].nested(place.region).initial
+        return self.states[region.owner].nested(region.name).initial
 
-    def regions(self, state: str) -> tuple[Place, ...]:
+    def regions(self, state: str) -> tuple[RegionId, ...]:
         """The regions of a state."""
-        return tuple(Place(state, nested.name) for nested in self.states[state].regions)
+        return self.states[state].region_ids
 
     # --- what is around
 
-    def places(self, vertex: str) -> tuple[Place, ...]:
+    def regions_around(self, vertex: str) -> tuple[RegionId, ...]:
         """The regions around a vertex, innermost first; the last is the top-level region."""
-        found = [self.place(vertex)]
+        found = [self.region_of(vertex)]
         while found[-1].owner is not None:
-            found.append(self.place(found[-1].owner))
+            found.append(self.region_of(found[-1].owner))
         return tuple(found)
 
     def above(self, vertex: str) -> tuple[str, ...]:
         """The states around a vertex, innermost first."""
-        return tuple(place.owner for place in self.places(vertex) if place.owner is not None)
+        return tuple(r.owner for r in self.regions_around(vertex) if r.owner is not None)
 
-    def child(self, place: Place, vertex: str) -> str | None:
+    def child(self, region: RegionId, vertex: str) -> str | None:
         """The vertex directly in a region that is the given one or holds it; None for neither."""
         at: str | None = vertex
         while at is not None:
-            here = self.place(at)
-            if here == place:
+            here = self.region_of(at)
+            if here == region:
                 return at
             at = here.owner
         return None
@@ -123,7 +116,7 @@ class Tree:
         first, *others = vertices
         for state in self.above(first):
             if all(state in self.above(other) for other in others):
-                held = {p for v in vertices for p in self.regions(state) if self.child(p, v)}
+                held = {r for v in vertices for r in self.regions(state) if self.child(r, v)}
                 return state if len(held) == len(vertices) else None
         return None
 
@@ -145,10 +138,10 @@ class Tree:
             found.setdefault(transition.target, []).append(transition)
         return {vertex: tuple(leading) for vertex, leading in found.items()}
 
-    def domain(self, source: str, target: str) -> Place:
+    def domain(self, source: str, target: str) -> RegionId:
         """The innermost region that holds both ends: what is left and entered is inside it."""
-        around = self.places(target)
-        return next(place for place in self.places(source) if place in around)
+        around = self.regions_around(target)
+        return next(region for region in self.regions_around(source) if region in around)
 
     def ways(self, transition: Transition) -> Iterator[Way]:
         """The compound transitions that begin with a transition: one for each path of junctions."""
@@ -165,16 +158,16 @@ class Tree:
 
     # --- entries
 
-    def entries(self, place: Place, targets: tuple[str, ...]) -> Iterator[EntryFlow]:
+    def entries(self, region: RegionId, targets: tuple[str, ...]) -> Iterator[EntryFlow]:
         """The behaviours on entering a region on the way to ``targets``; with none, by default.
 
         A target that is a pseudostate ends the way in its region.
         """
         if not targets:
-            initial = self.initial(place)
+            initial = self.initial(region)
             yield EntryFlow(None, initial.effect)
             targets = (initial.target,)
-        child = self.child(place, targets[0])
+        child = self.child(region, targets[0])
         if child is None or child not in self.states:
             return
         yield EntryFlow(child, self.states[child].entry)
@@ -216,14 +209,14 @@ class Way:
         return self.path[0].kind is TransitionKind.INTERNAL
 
     @cached_property
-    def domain(self) -> Place:
+    def domain(self) -> RegionId:
         """The region inside which it leaves and enters."""
         first = self.path[0]
         end = self.targets[0]
         if self.tree.kind(self.target) is PseudoKind.FORK:
             end = self.tree.divide(self.targets) or end
         if first.kind is TransitionKind.LOCAL:
-            return next(p for p in self.tree.places(end) if p.owner == first.source)
+            return next(r for r in self.tree.regions_around(end) if r.owner == first.source)
         return self.tree.domain(self.source, end)
 
     @cached_property

@@ -15,8 +15,7 @@ is
        and then M.Last = M.Last'Old
        and then M.Transmit_Errors = M.Transmit_Errors'Old
        and then M.Receive_Errors = M.Receive_Errors'Old;
-   --  The request of this number is open no more; the others keep their
-   --  order.
+   --  Remove the request with this number; the others keep their order.
 
    ---------
    -- Ask --

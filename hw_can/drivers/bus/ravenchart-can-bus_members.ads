@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A node of a served bus, as it knows itself: whether it has joined, which
---  of its requests are open, and its error counters.
+--  The state of a node of a served bus: whether it has joined, its open
+--  requests, and its error counters.
 --
 --  Guarantees   at most Most_Open requests are open, each under a number of
---               its own; each ends as sent or lost, and what a server must
---               not say ends the connection
+--               its own; each ends as sent or lost. An answer that breaks the
+--               protocol ends the connection
 --  Tasking      none: one owner for each Member
 --  Timing       constant
 
@@ -42,21 +42,21 @@ is
       Receive_Errors  : Error_Count := 0;
    end record
    with Predicate => (if Here = Away then Count = 0);
-   --  The first Count numbers of Open are those of requests that are open,
-   --  the oldest first. Last: the number of the latest request.
+   --  The first Count numbers of Open are those of the open requests, oldest
+   --  first. Last: the number of the latest request.
 
    function State (M : Member) return Controller_State
    is (if M.Here = Away then Stopped
        else Fault_Confinement.State_For
               (M.Transmit_Errors, M.Receive_Errors))
    with Global => null;
-   --  As its counters say (ISO 11898-1).
+   --  The state that the counters define (ISO 11898-1).
 
    function Is_Open
      (M : Member; Number : Interfaces.Unsigned_32) return Boolean
    is (for some I in 1 .. M.Count => M.Open (I) = Number)
    with Global => null;
-   --  Is an answer to this request still to come?
+   --  Is the answer to this request still outstanding?
 
    function Number_After (Number : Request_Number) return Request_Number
    is (if Number = Request_Number'Last then 1 else Number + 1)
@@ -83,13 +83,13 @@ is
        and then M.Here = M.Here'Old
        and then M.Transmit_Errors = M.Transmit_Errors'Old
        and then M.Receive_Errors = M.Receive_Errors'Old;
-   --  A frame is to be sent, as the request of this number.
+   --  Open a request to send a frame; it gets this number.
 
    type Consequence is
      (Carry_On, Note_Joined, Note_State, Take_Frame, Count_Sent, Count_Lost,
       End_Connection, Break_Off);
-   --  What a node does about what it has heard. Break_Off: a server must not
-   --  say that, or does not take the node in.
+   --  The reaction of a node to an answer. Break_Off: the answer breaks the
+   --  protocol, or the server does not accept the node.
 
    function Consequence_Of (M : Member; A : Answer) return Consequence
    is (if A.Kind = Closed then End_Connection
@@ -128,7 +128,7 @@ is
                and then M.Receive_Errors = A.Receive_Errors
           else M.Transmit_Errors = M.Transmit_Errors'Old
                and then M.Receive_Errors = M.Receive_Errors'Old);
-   --  The server has said A.
+   --  The answer A has come from the server.
 
    procedure Leave (M : in out Member; Lost : out Open_Count)
    with
@@ -139,6 +139,6 @@ is
        and then M.Transmit_Errors = 0
        and then M.Receive_Errors = 0
        and then Lost = M.Count'Old;
-   --  The connection is gone, and with it so many requests that were open.
+   --  The connection has ended: Lost requests were open.
 
 end Ravenchart.Can.Bus_Members;

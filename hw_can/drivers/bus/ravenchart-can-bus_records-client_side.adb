@@ -15,7 +15,7 @@ is
    is (Interfaces.Unsigned_32
          (Number_At_Place (Bytes, Number_At, 4) and 16#FFFF_FFFF#))
    with Global => null;
-   --  The request that is meant.
+   --  The number of the request in an answer.
 
    function Read_Welcome (Bytes : Image) return Answer
    with

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What a node says to its bus server, and what it hears from it
+--  The records that a node sends to its bus server and receives from it
 --  (docs/bus-protocol.md).
 --
 --  Guarantees   reading is total: any bytes give an answer that keeps every
@@ -24,9 +24,9 @@ is
       Closed,
       Turned_Away,
       Broken);
-   --  What a server can say. Noted: an error frame, of which a node makes
-   --  nothing. Closed: the server ends. Turned_Away: it ends the connection
-   --  for another reason.
+   --  The kinds of answers of a server. Noted: an error frame, which a node
+   --  ignores. Closed: the server ends. Turned_Away: the server ends the
+   --  connection for another reason.
 
    type Answer is record
       Kind            : Answer_Kind := Broken;
@@ -35,8 +35,8 @@ is
       Receive_Errors  : Error_Count := 0;
       Came            : Any_Frames.Any_Frame;
    end record;
-   --  Number of the request that is Confirmed or Refused, counters of
-   --  State_Told, and the frame that Came.
+   --  Number belongs to Confirmed and Refused, the counters to State_Told, and
+   --  Came is the frame that came.
 
    function Heard (Bytes : Image) return Answer
    with
@@ -44,20 +44,20 @@ is
      Post   =>
        (if Heard'Result.Kind in Confirmed | Refused
         then Heard'Result.Number > 0);
-   --  What a server has said.
+   --  The answer in a record of the server.
 
    function Hello (Name : String; Takes_Fd : Boolean) return Image
    with Global => null, Pre => Is_Name (Name);
-   --  The first record: a node, which takes any bit rate. One that does not
-   --  take CAN FD is told of no such frames.
+   --  The first record: a node, which takes any bit rate. A node that does not
+   --  take CAN FD receives no CAN FD frames.
 
    function Request
      (F : Any_Frames.Any_Frame; Number : Interfaces.Unsigned_32) return Image
    with Global => null, Pre => Number > 0;
-   --  Asks for F to be transmitted.
+   --  The request to transmit F.
 
    function Recovery return Image
    with Global => null;
-   --  Asks for the way out of bus-off.
+   --  The request to recover from bus-off.
 
 end Ravenchart.Can.Bus_Records.Client_Side;

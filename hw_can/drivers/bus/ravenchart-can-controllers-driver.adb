@@ -2,24 +2,25 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Driver "bus": a node of the simulated bus behind a bus server on this
---  machine (docs/bus-protocol.md), as each other process that joins it.
+--  machine (docs/bus-protocol.md), like each other process that joins it.
 --
---  Guarantees   whatever a server says or does, nothing is raised: the
---               connection ends, and another is tried; frames go to the
---               server in the order sent, Most_Open ahead of its answers
---  Tasking      a reader, which joins and takes what the server says, and a
---               writer, which waits for the transmit queue and for requests
---               of recovery
+--  Guarantees   whatever a server sends or does, no exception is raised: the
+--               connection ends, and the driver connects again. Frames go to
+--               the server in the order sent, up to Most_Open ahead of its
+--               answers
+--  Tasking      a reader, which joins and receives the answers of the server,
+--               and a writer, which waits for the transmit queue and for
+--               requests of recovery
 --  Timing       that of the server and of TCP: nothing here is real-time
---  Assumptions  ASM-005, the socket calls do what their spec says; the
---               server offers a node's oldest frame first, its default, or
+--  Assumptions  ASM-005, the socket calls do what their specification states.
+--               The server offers a node's oldest frame first, its default, or
 --               the most urgent of up to Most_Open (buffers by priority)
 --
---  RAVENCHART_BUS_PORT and RAVENCHART_BUS_NAME say which server, and who
---  joins. Sent counts what the bus has acknowledged, Rejected_Lines the
---  connections that a server made impossible. A node that is bus-off asks for
---  recovery as its setting says, and its transmit queue waits meanwhile; while
---  there is no server, what is sent is lost.
+--  RAVENCHART_BUS_PORT names the server, RAVENCHART_BUS_NAME this node. Sent
+--  counts the frames that were acknowledged on the bus, Rejected_Lines the
+--  connections that a server made impossible. A node that is bus-off requests
+--  recovery as its setting states, and its transmit queue waits until it is
+--  back. Frames sent while there is no server are lost.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -42,20 +43,20 @@ package body Driver is
    package Client_Side renames Bus_Records.Client_Side;
 
    subtype Wire_Record is Tcp_Sockets.Octets (Bus_Records.Position);
-   --  A record as the socket calls take it.
+   --  A record in the form of the socket calls.
 
    package Line is new Connections (Ceiling => Transmit_Ceiling);
-   --  To the server.
+   --  The connection to the server.
 
    type Permission is (Write, Wait, Give_Up);
-   --  What the writer does with a frame.
+   --  The decision of the writer about a frame.
 
    protected Membership
      with Priority => Transmit_Ceiling
    is
       procedure Hear
         (A : Client_Side.Answer; Then_Do : out Bus_Members.Consequence);
-      --  The server has said A.
+      --  The answer A has come from the server.
 
       procedure Begin_Request
         (May    : out Permission;
@@ -63,22 +64,22 @@ package body Driver is
       --  May a frame be sent now, and under which number?
 
       procedure Begin_Recovery (Asked : Boolean; May : out Boolean);
-      --  Is the server to be asked for recovery now? Asked: recovery was
-      --  requested. Of one bus-off it is asked once.
+      --  Is recovery to be requested from the server now? Asked: the program
+      --  has requested it. There is one request for each bus-off.
 
       procedure Leave (Lost : out Bus_Members.Open_Count);
-      --  The connection is gone, with so many requests.
+      --  The connection has ended: Lost requests were open.
 
       function Node return Bus_Members.Member;
 
    private
       Self    : Bus_Members.Member;
       Rescued : Boolean := False;
-      --  True when the server was asked for recovery since bus-off.
+      --  True when recovery was requested from the server since bus-off.
    end Membership;
 
    Welcome_Limit : constant Tcp_Sockets.Patience := 2_000;
-   --  So long a server may take to answer hello.
+   --  The longest time until a server answers hello.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -86,14 +87,14 @@ package body Driver is
 
    task Reader
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Joins the bus, as often as it must.
+   --  Joins the bus, and joins again after each end of the connection.
 
    task Writer
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Asks for what is in the transmit queue to be sent, and for recovery.
+   --  Requests the transmission of the queued frames, and recovery.
 
    Bus_Port : constant Ports.Port := 29_536;
-   --  Of a bus server that was told no other.
+   --  The default port of a bus server.
 
    procedure Connect (Server : out Sockets.Socket; Port : out Ports.Port)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
@@ -102,36 +103,36 @@ package body Driver is
 
    procedure Limit_Wait (Server : Sockets.Socket; To : Tcp_Sockets.Patience)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
-   --  Wait no longer than that for the server.
+   --  Limit the waits for the server to this time.
 
    procedure Say_Hello (Server : Sockets.Socket; Done : out Boolean)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
-   --  Ask to be taken in, under the name that the environment gives.
+   --  Request to join, under the name that the environment gives.
 
    procedure Write (Bytes : Bus_Records.Image)
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Sockets.Network));
-   --  Tell the server; the answer, or the end of the connection, shows what
-   --  becomes of it.
+   --  Send a record to the server. The answer, or the end of the connection,
+   --  shows its result.
 
    procedure Recover
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Membership, Upper.Wake_Up,
                    Sockets.Network));
-   --  Ask for the way out of bus-off, if that is due.
+   --  Request recovery from bus-off, if that is due.
 
    procedure Ask_To_Send (F : Any_Frames.Any_Frame; May : out Permission)
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Membership, Upper.State,
                    Sockets.Network));
-   --  Ask the server to send F, if that is allowed.
+   --  Request the transmission of F, if a request is allowed.
 
    procedure Note_State
    with Global => (In_Out => Upper.State, Input => Membership);
-   --  The node stands so.
+   --  Note the state and the counters of the node.
 
    procedure Serve
      (Server    : Sockets.Socket;
@@ -142,7 +143,8 @@ package body Driver is
        (In_Out => (Membership, Upper.State, Upper.Wake_Up,
                    Driver_Hosts.Console, Sockets.Network),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Say hello, and take what the server says until the connection ends.
+   --  Send hello, then receive the answers of the server until the connection
+   --  ends.
 
    protected body Membership is
 
@@ -388,7 +390,8 @@ package body Driver is
       Lost      : Bus_Members.Open_Count;
    begin
       delay until Epochs.Start;
-      --  Frames that come before the processors run would find nobody.
+      --  Wait for Start: a frame that came before the processors run would
+      --  find no reader.
       loop
          Connect (Server, Port);
          if Server /= Sockets.No_Socket then
@@ -415,7 +418,7 @@ package body Driver is
    task body Writer is
       F      : Any_Frames.Any_Frame := Any_Frames.Null_Any_Frame;
       Status : Queueing.Take_Status := Queueing.Empty;
-      --  F has yet to be sent while it is Taken.
+      --  While Status is Taken, F has yet to be sent.
       May    : Permission;
    begin
       loop

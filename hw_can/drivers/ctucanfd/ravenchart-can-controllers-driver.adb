@@ -4,15 +4,15 @@
 --  Driver "ctucanfd": a CTU CAN FD core by its registers, without the kernel.
 --
 --  Guarantees   frames go to the bus in the order sent, whatever their
---               identifiers; what does not fit is counted
+--               identifiers; a frame that does not fit is counted
 --  Tasking      one task, which looks at the core every millisecond
 --  Timing       bounded: at each look at most Frames_At_Once frames are
 --               received and four sent
---  Assumptions  ASM-013, the core is where Ctu_Hosts says
+--  Assumptions  ASM-013, the core is where Ctu_Hosts puts it
 --
 --  The core filters nothing, since Accepts does. It must have four transmit
---  buffers. When it goes, the state is Stopped and what is sent is lost; it
---  is looked for every second.
+--  buffers. When the core disappears, the state is Stopped and sent frames are
+--  lost; the driver looks for it every second.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -32,7 +32,7 @@ package body Driver is
    package Registers renames Ctu_Registers;
 
    Frames_At_Once : constant := 32;
-   --  More than a bus of 1 Mbit/s brings in a millisecond: 21.
+   --  More than the 21 frames that a bus of 1 Mbit/s carries in a millisecond.
 
    Looks_A_Second : constant := 1_000;
 
@@ -43,7 +43,7 @@ package body Driver is
       then Nominal else Registers.Hertz (Setting.Data_Rate));
 
    type Phase is (Absent, In_Reset, Running);
-   --  Of the core.
+   --  The phase of the core.
 
    subtype Look_Count is Natural range 0 .. Looks_A_Second;
 
@@ -55,9 +55,10 @@ package body Driver is
       Oldest   : Registers.Buffer := 1;
       Pending  : Natural range 0 .. 4 := 0;
    end record;
-   --  Looks until a core is looked for, or asked to recover, again; the state
-   --  of the core when last looked at; whether recovery was requested since
-   --  it is bus-off; and the buffers that wait to be sent, from Oldest on.
+   --  Retry_In: looks until the next search for a core, or the next request
+   --  for recovery. State: the state of the core at the last look. Rescued:
+   --  recovery was requested since bus-off. Pending: the buffers that wait to
+   --  be sent, from Oldest on.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -69,7 +70,7 @@ package body Driver is
 
    procedure Give_Up
    with Global => (In_Out => (Upper.State, Upper.Wake_Up));
-   --  There is nothing to send to.
+   --  Stop: there is no core to send to.
 
    procedure Look_For (P : in out Progress)
    with
@@ -79,26 +80,26 @@ package body Driver is
    procedure Configure (P : in out Progress)
    with
      Global => (In_Out => (Ctu_Core.Registers, Ctu_Hosts.Console));
-   --  Give it its bit rates, and let it join the bus.
+   --  Set the bit rates of the core, and let it join the bus.
 
    procedure Note_Errors (P : in out Progress)
    with
      Global => (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up));
-   --  How it stands; from bus-off, ask for recovery when the setting or a
-   --  request says so. One that has just been enabled is off too, and is
-   --  always asked: it needs no more than the bus to be idle.
+   --  Note the state and the counters. From bus-off, request recovery when the
+   --  setting or the program does. A core that has just been enabled is off
+   --  too, and recovery is always requested: it needs only an idle bus.
 
    procedure Receive_Frames
    with
      Global =>
        (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Take what has come.
+   --  Receive the frames that have come.
 
    procedure Send_Frames (P : in out Progress)
    with
      Global => (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up));
-   --  See what was sent, and fill the buffers again.
+   --  Note the frames that were sent, and fill the buffers again.
 
    procedure Serve (P : in out Progress)
    with
@@ -303,7 +304,8 @@ package body Driver is
 
    task body Poller is
       Due : Ada.Real_Time.Time := Epochs.Start;
-      --  Frames that come before the processors run would find nobody.
+      --  Wait for Start: a frame that came before the processors run would
+      --  find no reader.
       P   : Progress;
    begin
       loop

@@ -13,7 +13,7 @@ is
 
    Words : Cells
    with Volatile, Alignment => Ctu_Hosts.Window_Bytes;
-   --  A page of its own, which gives place to the core.
+   --  A page of its own, which the core replaces.
 
    ----------
    -- Open --

@@ -7,7 +7,7 @@
 --  Tasking      one task
 --  Timing       that of the bus the core is on; Read_Frame at most 32
 --               accesses, Write_Frame at most 20
---  Assumptions  ASM-013, where the words are; the machine has their byte
+--  Assumptions  ASM-013, the location of the words; the machine has their byte
 --               order, which on PCI is little-endian
 
 with Ravenchart.Can.Ctu_Frames;
@@ -15,8 +15,7 @@ with Ravenchart.Can.Ctu_Registers;
 
 generic
    Behind : Natural;
-   --  Which core of the card: so many behind the one that the environment
-   --  names.
+   --  The core of the card: so many behind the one that the environment names.
 package Ravenchart.Can.Ctu_Cores
   with
     SPARK_Mode,
@@ -28,8 +27,8 @@ package Ravenchart.Can.Ctu_Cores
 is
    procedure Open (Opened : out Boolean)
    with Global => (In_Out => Registers);
-   --  Let the registers be those of the core. Until then, and where that
-   --  fails, they are memory.
+   --  Map the registers to those of the core. Before that, and where it fails,
+   --  they are memory.
 
    procedure Read
      (From : Ctu_Registers.Register; Value : out Ctu_Registers.Word)
@@ -43,7 +42,7 @@ is
 
    procedure Read_Frame (I : out Ctu_Frames.Image)
    with Global => (In_Out => Registers);
-   --  Take the oldest frame out of the receive buffer, which has one.
+   --  Take the oldest frame out of the receive buffer, which must hold one.
 
    procedure Write_Frame
      (Into : Ctu_Registers.Buffer; I : Ctu_Frames.Image)

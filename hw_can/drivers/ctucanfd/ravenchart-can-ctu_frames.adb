@@ -16,8 +16,8 @@ is
      Global => null,
      Pre    => Bits = Word (Id),
      Post   => Bits <= Word (Identifier'Last) and then Identifier (Bits) = Id;
-   --  An identifier is the same after both conversions. Provers do not see
-   --  it of what a function returned.
+   --  An identifier is the same after both conversions. Provers do not find
+   --  that for the result of a function.
 
    function Rest_Of (Length : Fd_Frames.Fd_Length) return Word
    is (Interfaces.Shift_Left (Word (3 + (Length + 3) / 4), 11))

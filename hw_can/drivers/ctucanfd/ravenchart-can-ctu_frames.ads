@@ -1,11 +1,11 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames as a CTU CAN FD core keeps them, in a transmit buffer and in its
+--  Frames in the format of a CTU CAN FD core, in a transmit buffer and in its
 --  receive buffer: "CTU CAN FD IP Core: Datasheet", chapter "CAN frame
 --  format".
 --
---  Guarantees   what is converted there and back is the same frame; any
+--  Guarantees   a frame that is converted there and back is the same; any
 --               words have a meaning
 --  Tasking      none: values
 --  Timing       constant
@@ -57,7 +57,7 @@ is
    function Is_Fd (I : Image) return Boolean
    is ((I.Layout and Fd_Bit) /= 0)
    with Global => null;
-   --  A CAN FD frame, rather than one of the classic format.
+   --  Is it a CAN FD frame, not a classic one?
 
    function Format_Of (I : Image) return Frame_Format
    is (if (I.Layout and Extended_Bit) /= 0 then Extended else Standard)
@@ -72,8 +72,8 @@ is
      Post   =>
        Bits_Of'Result
        <= (if Format = Extended then 16#1FFF_FFFF# else 16#7FF#);
-   --  The identifier in IDENTIFIER_W. A standard one stands where the upper
-   --  eleven bits of an extended one do.
+   --  The identifier in IDENTIFIER_W. A standard one takes the bits of the
+   --  upper eleven of an extended one.
 
    function Id_Of (I : Image) return Identifier
    is (Identifier (Bits_Of (I.Identity, Format_Of (I))))
@@ -95,8 +95,8 @@ is
    is (Interfaces.Unsigned_64 (I.Stamp_Low)
        or Interfaces.Shift_Left (Interfaces.Unsigned_64 (I.Stamp_High), 32))
    with Global => null;
-   --  When a frame was received, in ticks of the core's time base; of one to
-   --  send, the time before which it waits.
+   --  The time at which a frame was received, in ticks of the core's time
+   --  base; in a frame to send, the time before which it waits.
 
    --  Classic frames
 
@@ -118,8 +118,8 @@ is
                          or Interfaces.Shift_Left
                               (Interfaces.Unsigned_64 (I.Data (1)), 32))
                         and Mask (Frame_Of'Result.Length));
-   --  The frame that was received. A code above 8 stands for 8 bytes (ISO
-   --  11898-1); a remote frame has no data, whatever the words say.
+   --  The frame that was received. A code above 8 means 8 bytes (ISO 11898-1);
+   --  a remote frame has no data, whatever the words hold.
 
    function Image_Of (F : Frame) return Image
    with
@@ -134,7 +134,7 @@ is
        and then Frame_Of (Image_Of'Result).Kind = F.Kind
        and then Frame_Of (Image_Of'Result).Length = F.Length
        and then Payload (Frame_Of (Image_Of'Result)) = Payload (F);
-   --  What is written to a transmit buffer to send F, at once.
+   --  The words of a transmit buffer to send F at once.
 
    --  CAN FD frames
 
@@ -174,7 +174,7 @@ is
          (for all B in Fd_Frames.Fd_Index =>
             Fd_Frames.Byte (Fd_Frame_Of (Image_Of'Result), B)
             = Fd_Frames.Byte (F, B));
-   --  What is written to a transmit buffer to send F, at once.
+   --  The words of a transmit buffer to send F at once.
 
    --  Frames of either family
 

@@ -62,17 +62,18 @@ is
 
    Mapped_Windows : Window_List := (others => System.Null_Address)
    with Volatile;
-   --  Where a core has been put; two are more than a controller has.
+   --  The windows with a core; two are more than a controller has.
 
    Complained : Boolean := False
    with Volatile;
-   --  A core that is not there is looked for again; one message is enough.
+   --  The driver looks again for a core that is not there; one message is
+   --  enough.
 
    function Setting (Name, Default : String) return String;
-   --  What the environment says, or Default.
+   --  The value of an environment variable, or Default without it.
 
    function Number (Text : String) return Ctu_Registers.Hertz;
-   --  Its value, or 0 when it is no number in range.
+   --  The number in Text, or 0 when it is no number in range.
 
    function Device return String
    is (Setting ("RAVENCHART_CTUCANFD", ""));
@@ -81,7 +82,7 @@ is
    is (Device'Length > 2
        and then Device (Device'Last - 1) = ':'
        and then Device (Device'Last) in '0' .. '9');
-   --  Does it end in the number of a core?
+   --  Does the setting end in the number of a core?
 
    function File_Name return String
    is (if Names_Core
@@ -99,13 +100,13 @@ is
    function Replace
      (Window : System.Address; Flags, File : C_Int; Offset : Natural)
       return Boolean;
-   --  Put something else in place of a window; whether that went well.
+   --  Replace the page at Window; the result is True when that succeeded.
 
    procedure On_Bus_Error (Number : C_Int)
    with Convention => C;
-   --  A core was read or written that is there no more: let all windows be
-   --  memory again, and go on. Without any, the next such signal ends the
-   --  process as it would have.
+   --  An access found that a core has disappeared: make all windows memory
+   --  again, and continue. Where no window is left, the next such signal ends
+   --  the process as it would without this handler.
 
    -------------
    -- Setting --

@@ -36,12 +36,12 @@ is
    Trv_Delay           : constant Register := 16#080# / 4;
 
    Span : constant := 16#4000#;
-   --  Bytes from one core to the next, on a card with several.
+   --  The distance in bytes between cores, on a card with several.
 
    function Is_Core (Device_Id : Word) return Boolean
    is ((Device_Id and 16#FFFF#) = 16#CAFD#)
    with Global => null;
-   --  Does DEVICE_ID name a CTU CAN FD? Where no device answers, all bits
+   --  Does DEVICE_ID name a CTU CAN FD core? Where no device answers, all bits
    --  are set, or none.
 
    --  MODE, SETTINGS and COMMAND
@@ -53,8 +53,8 @@ is
    Fd_Tolerant : constant Word := 2**24;  --  PEX: FD frames are no errors
 
    Classic_Mode : constant Word := Enabled or Automatic or Fd_Tolerant;
-   --  Takes part in the bus, passes over FD frames, filters nothing, repeats
-   --  without limit, and keeps what waits while it is bus-off.
+   --  Takes part in the bus, ignores FD frames, filters nothing, repeats
+   --  without limit, and keeps waiting frames while it is bus-off.
 
    Fd_Mode : constant Word := Enabled or Automatic or Fd_Enabled;
    --  The same with FD frames.
@@ -65,7 +65,7 @@ is
    function Is_Overrun (Status : Word) return Boolean
    is ((Status and 2**1) /= 0)
    with Global => null;
-   --  DOR: did a frame come for which there was no room?
+   --  DOR: was a frame lost for want of room?
 
    --  Fault confinement
 
@@ -82,8 +82,8 @@ is
        then Error_Passive
        else Error_Active)
    with Global => null;
-   --  How the core stands. One that was enabled counts as bus-off until it
-   --  has seen eleven recessive bits: that is Stopped here.
+   --  The state of the core. A core that was enabled counts as bus-off until
+   --  it has seen eleven recessive bits; it is Stopped here.
 
    function Receive_Errors (Rec_Tec : Word) return Error_Count
    is (Error_Count (Word'Min (Rec_Tec and 16#1FF#, 256)))
@@ -120,7 +120,7 @@ is
    function Word_Of (B : Buffer; Index : Frame_Word) return Register
    is (Register (B) * (16#100# / 4) + Index)
    with Global => null;
-   --  Where it is: TXTB1_DATA_1 is at 16#100#.
+   --  The register of the word: TXTB1_DATA_1 is at 16#100#.
 
    type Buffer_State is range 0 .. 15;
    --  TXnS of TX_STATUS.
@@ -140,7 +140,7 @@ is
    function Has_Buffers (Tx_Status : Word) return Boolean
    is (for all B in Buffer => State_Of (Tx_Status, B) /= No_Buffer)
    with Global => null;
-   --  Are all the buffers there that the driver uses?
+   --  Does the core have all buffers that the driver uses?
 
    function Is_Done (Tx_Status : Word; B : Buffer) return Boolean
    is (State_Of (Tx_Status, B) not in Ready | In_Progress | Ending)
@@ -169,10 +169,11 @@ is
    --  A clock, or a bit rate in bits per second.
 
    subtype Quanta_Count is Hertz range 8 .. 155;
-   --  Time quanta of a bit: with so many, no field below is too small.
+   --  Time quanta of a bit: in this range no field below is too small.
 
    Data_Quanta : constant Quanta_Count := 100;
-   --  Of a bit of the data phase: with so many, no field of BTR_FD is.
+   --  Time quanta of a bit of the data phase: up to this number no field of
+   --  BTR_FD is too small.
 
    type Bit_Timing is record
       Prescaler   : Hertz range 1 .. 255 := 1;
@@ -185,7 +186,7 @@ is
    function Quanta (T : Bit_Timing) return Hertz
    is (1 + T.Propagation + T.Phase_1 + T.Phase_2)
    with Global => null;
-   --  Of a bit; the first one is the synchronization segment.
+   --  The time quanta of a bit; the first one is the synchronization segment.
 
    procedure Choose_Timing
      (Clock, Rate : Hertz;
@@ -201,9 +202,9 @@ is
           and then Quanta (T) in Quanta_Count'First .. Most
           and then 5 * T.Phase_2 <= Quanta (T)
           and then 5 * (T.Phase_2 + 1) > Quanta (T));
-   --  The timing that gives exactly Rate, with as many quanta as there can
-   --  be up to Most, and the sample point at 80 % or behind it by less than
-   --  a quantum. None is Found where Clock is no such multiple of Rate.
+   --  The timing that gives exactly Rate, with as many quanta as possible up
+   --  to Most, and the sample point at 80 % or behind it by less than a
+   --  quantum. Found is False where Clock is no suitable multiple of Rate.
 
    function Btr_Of (T : Bit_Timing) return Word
    is (Word (T.Propagation)
@@ -212,7 +213,7 @@ is
        or Interfaces.Shift_Left (Word (T.Prescaler), 19)
        or Interfaces.Shift_Left (Word (T.Phase_2), 27))
    with Global => null;
-   --  BTR; with up to Data_Quanta, BTR_FD too.
+   --  BTR; with up to Data_Quanta also BTR_FD.
 
    Normal_Sampling : constant Word := 2**24;  --  SSP_SRC
 
@@ -224,9 +225,10 @@ is
                16)
        else Normal_Sampling)
    with Global => null;
-   --  TRV_DELAY: where a sender samples the bits of its data phase. Above
-   --  1 Mbit/s that is as much behind the bit as it comes back late, which
-   --  the core measures, and the part of a bit before its sample point
-   --  (SSP_OFFSET, in clocks: transmitter delay compensation, ISO 11898-1).
+   --  TRV_DELAY: the point at which a sender samples the bits of its data
+   --  phase. Above 1 Mbit/s it lies two delays behind the start of the bit.
+   --  The core measures the first one, the loop delay. SSP_OFFSET, in clocks,
+   --  is the second one, the part of a bit before its sample point
+   --  (transmitter delay compensation, ISO 11898-1).
 
 end Ravenchart.Can.Ctu_Registers;

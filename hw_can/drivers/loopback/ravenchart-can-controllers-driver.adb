@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Driver "loopback": a bus inside the process, with this one node on it,
---  which receives what it sends.
+--  Driver "loopback": a bus inside the process with this node only, which
+--  receives the frames that it sends.
 --
 --  Guarantees   frames come back in the order sent; none is corrupted; the
 --               node is error-active, and never has to recover

@@ -12,7 +12,7 @@ is
      Global => null,
      Post   =>
        Is_Digit (Image'Result) and then Digit (Image'Result) = Value;
-   --  The digit that is worth Value.
+   --  The digit with this value.
 
    procedure Put_Byte
      (Line : in out Line_Bytes; Place : Positive; B : Byte_Value)
@@ -38,7 +38,7 @@ is
      Pre    =>
        Holds (Line, Start, Length, A) and then Holds (Line, Start, Length, B),
      Post   => (for all I in 0 .. Length - 1 => A (I) = B (I));
-   --  Digits are those of one row of bytes only.
+   --  The digits encode one sequence of bytes only.
 
    procedure Lemma_Holds
      (Line   : Line_Bytes;
@@ -93,7 +93,7 @@ is
             (Fd_Frames.Word (F, 0) and Mask (Length), 8 * I)
           and 16#FF#)
        = Fd_Frames.Byte (F, I);
-   --  A byte of the word is that of the frame.
+   --  A byte of the word is the same byte of the frame.
 
    procedure Lemma_Bytes (F : Fd_Frames.Fd_Frame; Plain : Frame)
    with
@@ -106,7 +106,7 @@ is
      Post   =>
        (for all I in 0 .. Plain.Length - 1 =>
           Byte (Plain, I) = Fd_Frames.Byte (F, I));
-   --  The same of the frame that carries the word.
+   --  The same for the frame that carries the word.
 
    function Nibble (Id : Line_Number; Place : Byte_Index) return Line_Number
    is ((case Place is
@@ -119,7 +119,7 @@ is
           when 6 => Id / 16#100_0000#,
           when 7 => Id / 16#1000_0000#) mod 16)
    with Global => null, Post => Nibble'Result <= 15;
-   --  The digit that counts 16**Place.
+   --  The digit with the weight 16**Place.
 
    procedure Lemma_Number (Id : Line_Number)
    with
@@ -150,7 +150,7 @@ is
          (for all I in 2 .. 1 + Id_Digits (Format) =>
             Value (Line (I)) = Nibble (Id, 1 + Id_Digits (Format) - I)),
      Post   => Number (Line, Format) = Id;
-   --  Digits that are those of a number read as this number.
+   --  The digits of a number are read as this number.
 
    procedure Put_Id
      (Line : in out Line_Bytes; F : Any_Frames.Any_Frame)

@@ -4,8 +4,8 @@
 --  Frames as lines of slcan, without the carriage return: the letter, the
 --  digits of the identifier, that of the length code, and those of the data.
 --
---  Guarantees   a line is read as a frame if and only if it keeps this form;
---               the line that Write gives for a frame is read as this frame
+--  Guarantees   a line is read as a frame if and only if it has this form; the
+--               line that Write gives for a frame is read as this frame
 --               (Lemma_Read_Back)
 --  Tasking      none: lines are values
 --  Timing       linear in the length of a line
@@ -43,7 +43,7 @@ is
    --  Is B one of them?
 
    subtype Digit_Value is Natural range 0 .. 15;
-   --  What one digit is worth.
+   --  The value of one digit.
 
    function Is_Digit (B : Byte_Value) return Boolean
    is (B in Code ('0') .. Code ('9')
@@ -59,7 +59,7 @@ is
    with
      Global => null,
      Pre    => Is_Digit (B);
-   --  What the digit B is worth.
+   --  The value of the digit B.
 
    function Id_Digits (Format : Frame_Format) return Positive
    is (if Format = Standard then 3 else 8)
@@ -69,10 +69,10 @@ is
    function Header (Format : Frame_Format) return Positive
    is (1 + Id_Digits (Format) + 1)
    with Global => null;
-   --  Where the digit of the length stands.
+   --  The position of the digit of the length.
 
    subtype Data_Start is Positive range 6 .. 11;
-   --  Where the digits of the data may begin.
+   --  The position at which the digits of the data may begin.
 
    function All_Digits
      (Line : Line_Bytes; Count : Content_Length) return Boolean
@@ -81,7 +81,7 @@ is
    --  Are there only digits behind the letter?
 
    type Line_Number is range 0 .. 2**32 - 1;
-   --  Eight digits.
+   --  A number of eight digits.
 
    function Value (B : Byte_Value) return Line_Number
    is (Line_Number (Digit (B)))
@@ -89,7 +89,7 @@ is
      Global => null,
      Pre    => Is_Digit (B),
      Post   => Value'Result <= 15;
-   --  What the digit B is worth, as a part of a number.
+   --  The value of the digit B, as a part of a number.
 
    function Number
      (Line : Line_Bytes; Format : Frame_Format) return Line_Number
@@ -158,7 +158,7 @@ is
    is (if Letter in Standard_Remote | Extended_Remote then Remote
        else Data)
    with Global => null;
-   --  What the letter of a line says of its frame.
+   --  The kind of the frame, from the letter of its line.
 
    function Length_At
      (Line : Line_Bytes; Place : Positive) return Fd_Frames.Fd_Length
@@ -167,7 +167,7 @@ is
    with
      Global => null,
      Pre    => Place <= Line_Limit and then Is_Digit (Line (Place));
-   --  The length whose code stands at Place.
+   --  The length with the code at Place.
 
    function Is_Frame_Line
      (Line : Line_Bytes; Count : Content_Length) return Boolean
@@ -189,7 +189,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Are the first Count bytes of Line those of a frame?
+   --  Are the first Count bytes of Line the line of a frame?
 
    function Letter_Of (F : Any_Frames.Any_Frame) return Byte_Value
    is (if F.Family = Any_Frames.Flexible
@@ -208,7 +208,7 @@ is
                  (if F.Plain.Format = Standard
                   then Standard_Remote else Extended_Remote)))
    with Global => null;
-   --  What the line of F begins with.
+   --  The letter of the line of F.
 
    function Length (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Length
    is (if F.Family = Any_Frames.Flexible then F.Fd.Length
@@ -220,7 +220,7 @@ is
        then 0
        else Length (F))
    with Global => null;
-   --  How many bytes of data F carries.
+   --  The number of bytes of data that F carries.
 
    function Data_Of (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes
    with
@@ -265,7 +265,7 @@ is
    with
      Ghost,
      Global => null;
-   --  Do A and B differ in nothing that a line tells?
+   --  Do A and B differ in nothing that a line carries?
 
    type Reading is record
       Found : Boolean := False;
@@ -282,7 +282,7 @@ is
          (if Frame_In'Result.Found
           then Stands_For (Line, Count, Frame_In'Result.F)
           else Frame_In'Result.F = Any_Frames.Null_Any_Frame);
-   --  The frame that the first Count bytes of Line stand for, if Found.
+   --  The frame of the line in the first Count bytes of Line, if Found.
 
    procedure Write
      (F     : Any_Frames.Any_Frame;

@@ -28,14 +28,15 @@ is
                         and then (for all I in 2 .. Count =>
                                     Is_Digit (Line (I))))
    with Global => null;
-   --  Is the line one of the commands that need no action here?
+   --  Is the line a command that needs no action here?
 
    function Needs_No_Action
      (Line : Line_Bytes; Count : Content_Length) return Boolean
    is (Settings_Are_Sound (Line, Count)
        or else (Count = 1 and then Line (1) in Code ('z') | Code ('Z')))
    with Global => null;
-   --  Is it one of these, or an adapter's word that it has sent?
+   --  Is the line such a command, or an adapter's confirmation that it has
+   --  sent a frame?
 
    procedure Read_Line
      (Line   : Line_Bytes;
@@ -62,7 +63,8 @@ is
          (if Result = Frame_Line
           then Stands_For (Line, Count, F)
           else F = Any_Frames.Null_Any_Frame);
-   --  What the first Count bytes of Line say. Every other line is rejected.
+   --  The meaning of the first Count bytes of Line. Every other line is
+   --  rejected.
 
    ---------------
    -- Read_Line --

@@ -2,14 +2,14 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  The slcan line protocol: frames and commands as lines of ASCII that end in
---  a carriage return. CAN FD frames have lines too, d, D, b and B, as
---  adapters and python-can write them.
+--  a carriage return. CAN FD frames have lines too, d, D, b and B, as adapters
+--  and python-can write them.
 --
---  Guarantees   total: any bytes in any order are taken; a bad or overlong
---               line is rejected as a whole, and the next one is read from
---               its start
+--  Guarantees   total: any bytes in any order are accepted; a bad or overlong
+--               line is rejected as a whole, and the next one is read from its
+--               start
 --  Tasking      none of its own: one task owns each Parser
---  Timing       Feed is linear in the length of a line, Format_Line too
+--  Timing       Feed and Format_Line are linear in the length of a line
 
 with Interfaces;
 with Ravenchart.Can.Any_Frames;
@@ -25,18 +25,18 @@ is
    --  Ends every line.
 
    Bell : constant Interfaces.Unsigned_8 := 7;
-   --  What an adapter says instead when it refuses a line.
+   --  The answer of an adapter that refuses a line.
 
    Line_Limit : constant := 139;
    --  The longest line: D, 8 digits of identifier, 1 of the length code, 128
    --  of data, and the carriage return.
 
    subtype Line_Length is Natural range 0 .. Line_Limit;
-   --  Bytes of a line.
+   --  The number of bytes of a line.
 
    type Line_Bytes is array (Positive range 1 .. Line_Limit)
      of Interfaces.Unsigned_8;
-   --  A line, and unused bytes behind it.
+   --  A line, followed by unused bytes.
 
    type Outcome is
      (Incomplete,
@@ -48,8 +48,9 @@ is
       Other_Command,
       Empty_Line,
       Rejected_Line);
-   --  What the last byte completed. Other_Command needs no answer here: bit
-   --  rates, filters, time stamps, an adapter's word that it has sent.
+   --  The line that the last byte completed. Other_Command needs no answer
+   --  here: bit rates, filters, time stamps, an adapter's confirmation that it
+   --  has sent a frame.
 
    type Parser is private
    with Default_Initial_Condition => Pending (Parser) = 0;
@@ -57,7 +58,7 @@ is
 
    function Pending (P : Parser) return Line_Length
    with Global => null;
-   --  How many bytes of an unfinished line P keeps.
+   --  The number of bytes of an unfinished line in P.
 
    procedure Feed
      (P      : in out Parser;
@@ -85,8 +86,8 @@ is
             elsif F.Plain.Kind = Data then 2 * F.Plain.Length
             else 0)
        and then Line (Last) = Carriage_Return;
-   --  The line that stands for F, its carriage return included. It does not
-   --  tell of the sender's error state.
+   --  The line of F, with its carriage return. It does not carry the sender's
+   --  error state.
 
 private
 
@@ -98,7 +99,7 @@ private
       Count    : Content_Length := 0;
       Overlong : Boolean := False;
    end record;
-   --  Overlong says that bytes of this line were thrown away.
+   --  Overlong: bytes of this line were discarded.
 
    function Pending (P : Parser) return Line_Length
    is (P.Count);

@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
---  which stands for the rest of the bus; or the host of an slcan adapter on
+--  which represents the rest of the bus. Or the host of an slcan adapter on
 --  the serial line that RAVENCHART_CAN_DEVICE names.
 --
 --  Guarantees   only whole, well-formed lines go to the client; a client that
@@ -10,12 +10,12 @@
 --  Tasking      a reader, which waits for clients and their lines, and a
 --               writer, which waits for the transmit queue
 --  Timing       that of the client and of TCP: nothing here is real-time
---  Assumptions  ASM-005, the socket calls do what their spec says
+--  Assumptions  ASM-005, the socket calls do what their specification states
 --
---  Commands get no answer except the two queries, as the clients in use
---  expect none. There is no bus error in slcan: the state is Error_Active
---  while a client has the channel open, and Stopped otherwise. So no fault is
---  ever logged, and an adapter leaves bus-off as its firmware does.
+--  Commands get no answer except the two queries, as the clients in use expect
+--  none. There is no bus error in slcan: the state is Error_Active while a
+--  client has the channel open, and Stopped otherwise. So no fault is ever
+--  logged, and an adapter leaves bus-off as its firmware does.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -39,7 +39,7 @@ package body Driver is
    use type Sockets.Socket;
 
    type Answer is (Version, Serial_Number);
-   --  What a client can ask for.
+   --  The queries of a client.
 
    package Answers is new Queues
      (Element_Type => Answer,
@@ -47,11 +47,12 @@ package body Driver is
       Capacity     => 8,
       Ceiling      => Transmit_Ceiling,
       Policy       => Queueing.Reject_Newest);
-   --  To be written, as one task alone writes; when there is no room the
-   --  client gets none.
+   --  Answers for the writer, since only one task writes. A client gets no
+   --  answer when there is no room.
 
    package Line is new Connections (Ceiling => Transmit_Ceiling);
-   --  To the client, whose channel is open while the state is Error_Active.
+   --  The connection to the client, whose channel is open while the state is
+   --  Error_Active.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -63,7 +64,7 @@ package body Driver is
 
    task Writer
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Writes the answers and what is in the transmit queue.
+   --  Writes the answers and the frames of the transmit queue.
 
    procedure Put_Answer (Item : Answer)
    with Global => (In_Out => (Answers.State, Upper.Wake_Up));
@@ -74,7 +75,7 @@ package body Driver is
      Global =>
        (In_Out => (Answers.State, Upper.State, Upper.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Do what a line of the client says.
+   --  Execute a line of the client.
 
    procedure Serve (Client : Sockets.Socket)
    with
@@ -82,7 +83,7 @@ package body Driver is
        (In_Out => (Answers.State, Upper.State, Upper.Wake_Up,
                    Sockets.Network),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Take the client's lines until it goes.
+   --  Read the client's lines until it disconnects.
 
    subtype Answer_Line is Tcp_Sockets.Octets (1 .. 6);
 
@@ -97,23 +98,24 @@ package body Driver is
             Character'Pos ('2'), Character'Pos ('3'),
             Slcan.Carriage_Return))
    with Global => null;
-   --  The line that stands for an answer.
+   --  The line of an answer.
 
    procedure Write_Answer (Item : Answer)
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Sockets.Network));
-   --  Write it, if there is a client.
+   --  Write the answer, if there is a client.
 
    procedure Write_Frame (F : Any_Frames.Any_Frame)
    with
      Global =>
        (In_Out => (Line.State, Line.Wake_Up, Upper.State,
                    Sockets.Network));
-   --  Write it, if there is a client whose channel is open, and count it.
+   --  Write the frame and count it, if there is a client whose channel is
+   --  open.
 
    Device_Variable : constant String := "RAVENCHART_CAN_DEVICE";
-   --  It names the serial line of an adapter.
+   --  The variable that names the serial line of an adapter.
 
    procedure Open_Server (Server : out Sockets.Socket)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
@@ -122,9 +124,10 @@ package body Driver is
 
    procedure Open_Serial (Client : out Sockets.Socket)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
-   --  Open the serial line, tell the slcan adapter there its bit rates and to
-   --  open its channel, and announce it on standard output. The digit that
-   --  RAVENCHART_CAN_SPEED names goes before the bit rate of the bus.
+   --  Open the serial line, set the bit rates of the slcan adapter, open its
+   --  channel, and announce it on standard output. The digit that
+   --  RAVENCHART_CAN_SPEED names takes precedence over the bit rate of the
+   --  bus.
 
    -----------------
    -- Open_Server --
@@ -316,8 +319,8 @@ package body Driver is
       Last   : Natural;
    begin
       delay until Epochs.Start;
-      --  A client that came before the processors run would find nobody
-      --  to take its frames.
+      --  Wait for Start: a client that came before the processors run would
+      --  find no reader for its frames.
       Driver_Hosts.Read_Setting (Device_Variable, Unused, Last);
       Serial := Last > 0;
       if not Serial then

@@ -3,7 +3,7 @@
 
 --  Serial lines of the host.
 --
---  Guarantees   a line that is not there shows as No_Socket
+--  Guarantees   a line that does not exist shows as No_Socket
 --  Tasking      one task
 --  Timing       that of the system
 
@@ -13,8 +13,8 @@ package Ravenchart.Can.Serial_Lines
   with SPARK_Mode
 is
    type Outcome is (Opened, No_Device, No_Line);
-   --  No_Device: there is no such file, or not for us. No_Line: it is
-   --  something else, or does not take what is written.
+   --  No_Device: the file does not exist, or access is denied. No_Line: it is
+   --  no serial line, or does not accept the bytes.
 
    Path_Limit : constant := 1_024;
 
@@ -26,7 +26,7 @@ is
    with
      Global => (In_Out => Sockets.Network),
      Pre    => Path'Length <= Path_Limit;
-   --  Open the line that Path names as it is set, without echo and
+   --  Open the line that Path names with its settings, without echo and
    --  translation, and write First; No_Socket when it is not Opened.
 
 end Ravenchart.Can.Serial_Lines;

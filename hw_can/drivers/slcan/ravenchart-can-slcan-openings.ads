@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What a host says first to an slcan adapter: its bit rates, and that it
---  opens the channel.
+--  The first commands of a host to an slcan adapter: they set its bit rates
+--  and open the channel.
 --
 --  Guarantees   no state
 --  Tasking      none
@@ -14,7 +14,7 @@ is
    function Is_Speed (Text : String) return Boolean
    is (Text'Length <= 1 and then (for all C of Text => C in '0' .. '8'))
    with Global => null;
-   --  Is it a digit of the command S, or nothing?
+   --  Is it a digit of the command S, or empty?
 
    Length_Limit : constant := 10;
 
@@ -29,8 +29,8 @@ is
      Global => null,
      Pre    => Is_Speed (Speed),
      Post   => Last <= Length_Limit;
-   --  The commands C, S, Y and O. S and Y have digits for usual bit rates
-   --  alone, and Y is told where CAN FD frames switch to a whole number of
-   --  Mbit/s; Speed goes before the bit rate of Bus.
+   --  The commands C, S, Y and O. S is sent for the usual bit rates, and Y for
+   --  CAN FD with a data bit rate of a whole number of Mbit/s. Speed takes
+   --  precedence over the bit rate of Bus.
 
 end Ravenchart.Can.Slcan.Openings;

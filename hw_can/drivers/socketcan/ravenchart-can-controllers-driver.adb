@@ -3,17 +3,17 @@
 
 --  Driver "socketcan": a CAN interface of Linux, through a raw socket.
 --
---  Guarantees   frames go to the interface in the order sent; one that it has
---               no room for waits, and those behind it
+--  Guarantees   frames go to the interface in the order sent; a frame without
+--               room there waits, and so do those behind it
 --  Tasking      a reader, which waits for frames and error reports, and a
 --               writer, which waits for the transmit queue
 --  Timing       that of Linux: nothing here is real-time
---  Assumptions  ASM-011, the socket calls do what their spec says
+--  Assumptions  ASM-011, the socket calls do what their specification states
 --
---  The state follows the error reports: Error_Active when something was
---  sent or received, Stopped while the interface is down or not there. The
---  interface leaves bus-off by its own setting, restart-ms: a raw socket has
---  no way to ask for it.
+--  The state follows the error reports: Error_Active when a frame was sent or
+--  received, Stopped while the interface is down or missing. The interface
+--  leaves bus-off by its own setting, restart-ms: a raw socket cannot request
+--  it.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
@@ -32,7 +32,7 @@ package body Driver is
    use type Sockets.Socket;
 
    package Line is new Connections (Ceiling => Transmit_Ceiling);
-   --  To the interface.
+   --  The connection to the interface.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -40,17 +40,17 @@ package body Driver is
 
    task Reader
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Takes what the interface receives.
+   --  Reads the frames that the interface receives.
 
    task Writer
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
-   --  Sends what is in the transmit queue.
+   --  Sends the frames of the transmit queue.
 
    procedure Note_Report (Report : Socket_Frames.Item)
    with
      Global => (In_Out => Upper.State),
      Pre    => Socket_Frames.Is_Error (Report);
-   --  The interface has told how the controller stands.
+   --  Note the state of the controller from a report of the interface.
 
    procedure Take (Item : Socket_Frames.Item)
    with
@@ -64,7 +64,7 @@ package body Driver is
      Global =>
        (In_Out => (Upper.State, Upper.Wake_Up, Sockets.Network),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Take what comes until the socket is of no use any more.
+   --  Receive until the socket is no longer usable.
 
    procedure Put (F : Any_Frames.Any_Frame; Sent : out Boolean)
    with
@@ -77,7 +77,7 @@ package body Driver is
 
    procedure Read_Name (Name : out Interface_Name; Last : out Positive)
    with Global => null, Post => Last <= Interface_Name'Last;
-   --  What RAVENCHART_CAN_INTERFACE says, or can0.
+   --  The interface that RAVENCHART_CAN_INTERFACE names, or can0.
 
    procedure Open (Bus : out Sockets.Socket)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
@@ -220,7 +220,8 @@ package body Driver is
       Bus : Sockets.Socket;
    begin
       delay until Epochs.Start;
-      --  Frames that come before the processors run would find nobody.
+      --  Wait for Start: a frame that came before the processors run would
+      --  find no reader.
       loop
          Open (Bus);
          if Bus = Sockets.No_Socket then

@@ -46,7 +46,7 @@ is
          when No_Room | Try_Again => Busy,
          when Network_Down        => Down,
          when others              => Gone);
-   --  What the call before it has failed of.
+   --  The failure of the preceding call.
 
    ----------
    -- Open --
@@ -109,7 +109,7 @@ is
          Read := C_Receive
            (C_Int (From), Item'Address, Fd_Frame_Length, 0);
          if Read in Frame_Length | Fd_Frame_Length then
-            --  The length tells the format, on kernels of any age.
+            --  The length gives the format, on kernels of any age.
             Item.Flags :=
               (if Read = Fd_Frame_Length
                then Item.Flags or Socket_Frames.Fd_Flag else 0);

@@ -18,11 +18,11 @@ is
 
    type Outcome is (Done, Busy, Refused, Down, Gone);
    --  Busy: no room to send at present. Refused: the interface is not set up
-   --  for CAN FD. Down: the interface is not up. Gone: the socket is of no use
-   --  any more.
+   --  for CAN FD. Down: the interface is not up. Gone: the socket is no longer
+   --  usable.
 
    type Opening is (Joined, No_Can, No_Interface);
-   --  No_Can: the system has none.
+   --  No_Can: the system has no SocketCAN.
 
    Name_Limit : constant := 64;
    --  More than Linux allows.
@@ -33,8 +33,8 @@ is
       Opened  : out Socket;
       Result  : out Opening)
    with Global => (In_Out => Network), Pre => Name'Length <= Name_Limit;
-   --  A socket on the interface of that name, with all error reports, and with
-   --  CAN FD frames if so asked; No_Socket when it has not Joined.
+   --  A socket on the interface with this name, with all error reports, and
+   --  with CAN FD frames if Fd is requested; No_Socket when it has not Joined.
 
    procedure Receive
      (From   : Socket;

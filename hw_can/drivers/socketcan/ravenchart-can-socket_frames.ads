@@ -1,12 +1,12 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames and error reports as Linux hands them over on a raw CAN socket:
---  struct can_frame and struct canfd_frame of linux/can.h, and the error
---  classes of linux/can/error.h.
+--  Frames and error reports in the format of a raw CAN socket of Linux: struct
+--  can_frame and struct canfd_frame of linux/can.h, and the error classes of
+--  linux/can/error.h.
 --
---  Guarantees   what is converted there and back is the same frame; every
---               item that a socket can hand over has a meaning
+--  Guarantees   a frame that is converted there and back is the same; every
+--               item of a socket has a meaning
 --  Tasking      none: values
 --  Timing       constant
 
@@ -36,8 +36,8 @@ is
       Data     : Data_Bytes := (others => 0);
    end record
    with Convention => C;
-   --  struct canfd_frame: 72 bytes, Id in the order of the machine. The first
-   --  16 are a struct can_frame where Flags does not tell of CAN FD.
+   --  struct canfd_frame: 72 bytes, Id in the order of the machine. Unless
+   --  Flags has the bit of CAN FD, the first 16 are a struct can_frame.
 
    Switch_Flag  : constant Interfaces.Unsigned_8 := 1;
    Passive_Flag : constant Interfaces.Unsigned_8 := 2;
@@ -56,12 +56,12 @@ is
    function Is_Error (I : Item) return Boolean
    is ((I.Id and Error_Flag) /= 0)
    with Global => null;
-   --  An error report rather than a frame of the bus.
+   --  Is it an error report, not a frame of the bus?
 
    function Is_Fd (I : Item) return Boolean
    is ((I.Flags and Fd_Flag) /= 0)
    with Global => null;
-   --  Of CAN FD, rather than of the classic format.
+   --  Is it a CAN FD frame, not a classic one?
 
    function Is_Frame (I : Item) return Boolean
    is (not Is_Error (I)
@@ -73,7 +73,7 @@ is
        and then ((I.Id and Extended_Flag) /= 0
                  or else (I.Id and Extended_Bits) <= Standard_Bits))
    with Global => null;
-   --  A frame of a bus.
+   --  Is it a frame of the bus?
 
    function Frame_Of (I : Item) return Frame
    with
@@ -133,7 +133,7 @@ is
                 = (F.Kind = Remote)
        and then (for all B in Byte_Index =>
                    Item_Of'Result.Data (B) = Byte (F, B));
-   --  What is handed to the socket to send F.
+   --  The item that sends F through the socket.
 
    function Item_Of (F : Fd_Frames.Fd_Frame) return Item
    with
@@ -152,14 +152,14 @@ is
                 = (F.Sender = Fd_Frames.Passive_Sender)
        and then (for all B in Fd_Frames.Fd_Index =>
                    Item_Of'Result.Data (B) = Fd_Frames.Byte (F, B));
-   --  What is handed to the socket to send F.
+   --  The item that sends F through the socket.
 
    function Item_Of (F : Any_Frames.Any_Frame) return Item
    is (case F.Family is
          when Any_Frames.Classic  => Item_Of (F.Plain),
          when Any_Frames.Flexible => Item_Of (F.Fd))
    with Global => null;
-   --  What is handed to the socket to send F.
+   --  The item that sends F through the socket.
 
    --  Error reports
 
@@ -192,12 +192,13 @@ is
        then Error_Active
        else Now)
    with Global => null;
-   --  How the controller stands after an error report; a frame changes
+   --  The state of the controller after an error report; a frame changes
    --  nothing.
 
    function Has_Counters (Report : Item) return Boolean
    is (Is_Error (Report) and then (Report.Id and Counters_Class) /= 0)
    with Global => null;
-   --  Does it carry the error counters: transmit in byte 6, receive in 7?
+   --  Does the report have the error counters: transmit in byte 6, receive in
+   --  7?
 
 end Ravenchart.Can.Socket_Frames;

@@ -36,7 +36,8 @@ is
    end Link;
 
    Let_Go : Suspension_Object;
-   --  True when the writer may have let go since the reader looked.
+   --  True when the writer may have released the socket since the reader last
+   --  looked.
 
    protected body Link is
 

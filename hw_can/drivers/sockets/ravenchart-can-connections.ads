@@ -1,11 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The socket of a driver: its reader opens it and closes it, its writer uses
---  it.
+--  The socket of a driver: its reader opens and closes it, its writer uses it.
 --
---  Guarantees   a socket is closed only when the writer has let go: the system
---               gives the number of a closed socket to the next one
+--  Guarantees   a socket is closed only when the writer has released it: the
+--               system gives the number of a closed socket to the next one
 --  Tasking      one reader, one writer
 --  Timing       constant; only Wait_Unused and Pause suspend
 --  Analysis     one shared object, ceiling Ceiling
@@ -29,11 +28,11 @@ is
 
    procedure Attach (To : Sockets.Socket)
    with Global => (In_Out => State);
-   --  There is a socket.
+   --  Set the socket.
 
    procedure Detach
    with Global => (In_Out => State);
-   --  There is none any more: no further use of it begins.
+   --  Remove the socket: no further use of it begins.
 
    procedure Wait_Unused
    with Global => (In_Out => Wake_Up, Input => State);
@@ -41,16 +40,16 @@ is
 
    procedure Pause (Milliseconds : Positive)
    with Global => (Input => Ada.Real_Time.Clock_Time);
-   --  Let time pass before the next try; by either task.
+   --  Let time pass before the next attempt; called by either task.
 
    --  For the writer
 
    procedure Begin_Use (Of_Socket : out Sockets.Socket)
    with Global => (In_Out => State);
-   --  The socket, not to be closed until End_Use; No_Socket if there is none.
+   --  The socket, which stays open until End_Use; No_Socket if there is none.
 
    procedure End_Use
    with Global => (In_Out => (State, Wake_Up));
-   --  The writer lets go.
+   --  The writer releases the socket.
 
 end Ravenchart.Can.Connections;

@@ -13,14 +13,14 @@ is
 
    Complained : Boolean := False
    with Atomic;
-   --  What fails is tried again; one message is enough.
+   --  The drivers retry; one message is enough.
 
    procedure Print
      (File : C_Int; Head, Text, About : String; Rest : String := "");
    --  Write the parts and the end of a line to File, unbuffered.
 
    Digit_Limit : constant := 10;
-   --  Of a Natural.
+   --  The digits of a Natural.
 
    subtype Image is String (1 .. Digit_Limit);
 
@@ -39,7 +39,7 @@ is
       Ignored : Interfaces.C.long;
 
       procedure Add (Part : String);
-      --  Append it.
+      --  Append Part.
 
       procedure Add (Part : String) is
       begin

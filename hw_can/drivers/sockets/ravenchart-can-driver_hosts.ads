@@ -1,11 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the drivers by sockets and serial lines ask of the host beside these:
---  settings from the environment, and messages to whoever started the
---  program.
+--  Services of the host for the drivers by sockets and serial lines: settings
+--  from the environment, and messages to the user.
 --
---  Guarantees   nothing is raised
+--  Guarantees   no exception is raised
 --  Tasking      the two tasks of a driver; each call is independent
 --  Timing       that of the system
 
@@ -27,8 +26,8 @@ is
      Global => null,
      Pre    => Text'First = 1 and then Text'Last in 1 .. Text_Limit,
      Post   => Last <= Text'Last;
-   --  What the environment says, cut off where Text ends; nothing when it is
-   --  not set.
+   --  The value of an environment variable, cut off where Text ends; empty
+   --  when the variable is not set.
 
    procedure Announce (Text : String; About : String)
    with
@@ -39,7 +38,7 @@ is
 
    procedure Announce (Text : String; Number : Natural)
    with Global => (In_Out => Console), Pre => Text'Length <= Text_Limit;
-   --  The same of a number.
+   --  The same with a number.
 
    procedure Complain
      (Reason : String; About : String := ""; Rest : String := "")
@@ -49,14 +48,14 @@ is
        Reason'Length <= Text_Limit
        and then About'Length <= Text_Limit
        and then Rest'Length <= Text_Limit;
-   --  Say on standard error what is wrong, the three parts in a row: the
-   --  first time only, as most is tried again.
+   --  Print an error message of three parts to standard error: the first one
+   --  only, as most operations are retried.
 
    procedure Complain (Reason : String; Number : Natural; Rest : String)
    with
      Global => (In_Out => Console),
      Pre    =>
        Reason'Length <= Text_Limit and then Rest'Length <= Text_Limit;
-   --  The same about a number.
+   --  The same with a number.
 
 end Ravenchart.Can.Driver_Hosts;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the drivers by sockets and serial lines ask of Linux: calls of the C
---  library, and numbers.
+--  The calls of the C library and the numbers of Linux for the drivers by
+--  sockets and serial lines.
 --
 --  Guarantees   none: callers keep to the manual pages, sections 2 and 3
 --  Tasking      each call is independent
@@ -108,7 +108,7 @@ is
    function C_To_Network
      (Value : Interfaces.Unsigned_16) return Interfaces.Unsigned_16
    with Import, Convention => C, External_Name => "htons";
-   --  The same both ways.
+   --  The same function converts in both directions.
 
    function C_Host_To_Network
      (Value : Interfaces.Unsigned_32) return Interfaces.Unsigned_32
@@ -145,6 +145,6 @@ is
    At_Once         : constant C_Int := 0;
 
    type Line_Settings is array (1 .. 32) of Interfaces.Unsigned_64;
-   --  Room for a struct termios, and more.
+   --  Larger than a struct termios.
 
 end Ravenchart.Can.Linux_Calls;

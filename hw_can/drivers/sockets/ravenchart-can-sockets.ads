@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What sockets of every kind have in common.
+--  The common part of all sockets.
 --
---  Guarantees   nothing is raised
+--  Guarantees   no exception is raised
 --  Tasking      the two tasks of a driver; each call is independent
 --  Timing       that of the system
 
@@ -20,7 +20,7 @@ is
    --  A descriptor of the operating system.
 
    No_Socket : constant Socket := -1;
-   --  What a failed call hands over.
+   --  The result of a failed call.
 
    procedure Close (Old : Socket)
    with Global => (In_Out => Network);

@@ -5,7 +5,7 @@ package body Ravenchart.Can.Ports
   with SPARK_Mode
 is
    Digit_Limit : constant := 32;
-   --  More characters are no port, with whatever zeros it begins.
+   --  A longer text is no port, even with leading zeros.
 
    ----------
    -- Read --

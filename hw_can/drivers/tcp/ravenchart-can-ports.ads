@@ -23,7 +23,7 @@ is
    with
      Global => (In_Out => Driver_Hosts.Console),
      Pre    => Variable'Length <= Driver_Hosts.Text_Limit;
-   --  The port that Variable names; Default when it is not set. Not Is_Sound
-   --  when it names none, which is said on standard error.
+   --  The port that Variable names; Default when it is not set. Otherwise
+   --  Is_Sound is False, with a message on standard error.
 
 end Ravenchart.Can.Ports;

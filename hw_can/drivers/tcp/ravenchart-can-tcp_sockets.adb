@@ -18,10 +18,10 @@ is
        Port    => C_To_Network (Port),
        Host    => C_Host_To_Network (Local_Host),
        Padding => 0);
-   --  That port of this machine.
+   --  The address of that port of this machine.
 
    procedure Hurry (File : C_Int);
-   --  Small records shall not wait for more.
+   --  Send small records without delay (TCP_NODELAY).
 
    -----------
    -- Hurry --

@@ -4,13 +4,13 @@
 --  Driver "xilinx": the CAN controller of Zynq-7000 and Zynq UltraScale+.
 --
 --  Guarantees   frames go to the bus in the order sent, whatever their
---               identifiers; what does not fit is counted
+--               identifiers; a frame that does not fit is counted
 --  Tasking      one task, which looks at the controller every millisecond
 --  Timing       bounded: at each look at most Fifo_Depth frames are received
 --               and as many sent
---  Assumptions  ASM-022, the controller is where Xcan_Core says
+--  Assumptions  ASM-022, the controller is at the address in Xcan_Core
 --
---  The receive FIFO holds what a full bus of 1 Mbit/s brings in 3 ms. The
+--  The receive FIFO holds the frames of 3 ms of a full bus of 1 Mbit/s. The
 --  controller filters nothing, since Accepts does. It has no CAN FD.
 
 with Ada.Real_Time;
@@ -31,10 +31,10 @@ package body Driver is
    package Registers renames Xcan_Registers;
 
    Period : constant := 1_000_000;
-   --  From one look to the next.
+   --  The time from one look to the next.
 
    Clock : constant := 100_000_000;
-   --  That of the controller: CAN_REF_CLK.
+   --  The clock of the controller: CAN_REF_CLK.
 
    Nominal : constant Registers.Hertz := Registers.Hertz (Setting.Bit_Rate);
 
@@ -42,8 +42,8 @@ package body Driver is
 
    Recovery_Looks : constant Look_Count :=
      Look_Count (128 * 11 * 1_000 / Setting.Bit_Rate) + 2;
-   --  As long as 128 times eleven recessive bits (ISO 11898-1), and one look
-   --  more.
+   --  The duration of 128 times eleven recessive bits (ISO 11898-1), and one
+   --  look more.
 
    type Progress is record
       Configured : Boolean := False;
@@ -51,9 +51,10 @@ package body Driver is
       Wait       : Look_Count := 0;
       Pending    : Natural range 0 .. Registers.Fifo_Depth := 0;
    end record;
-   --  Whether the controller was configured; whether it is in reset because
-   --  it was bus-off, and for how many looks yet, 0 before recovery is
-   --  requested; and the frames in the transmit FIFO when it was last filled.
+   --  Configured: the controller was configured. Held: it is in reset because
+   --  it was bus-off. Wait: the looks for which it stays there, 0 before
+   --  recovery is requested. Pending: the frames in the transmit FIFO when it
+   --  was last filled.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
@@ -70,20 +71,21 @@ package body Driver is
    procedure Note_Errors (P : in out Progress)
    with
      Global => (In_Out => (Xcan_Core.Registers, Upper.State, Upper.Wake_Up));
-   --  How it stands. From bus-off it comes back by itself; where that needs a
-   --  request it is held in reset, and what is in its FIFO is lost.
+   --  Note the state and the counters. The controller leaves bus-off by
+   --  itself. Where recovery needs a request, the driver holds it in reset,
+   --  and the frames in its FIFO are lost.
 
    procedure Receive_Frames
    with
      Global =>
        (In_Out => (Xcan_Core.Registers, Upper.State, Upper.Wake_Up),
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  Take what has come.
+   --  Receive the frames that have come.
 
    procedure Send_Frames (P : in out Progress)
    with
      Global => (In_Out => (Xcan_Core.Registers, Upper.State, Upper.Wake_Up));
-   --  Where all was sent, fill the FIFO again.
+   --  Fill the FIFO again when all its frames were sent.
 
    ---------------
    -- Configure --
@@ -141,7 +143,7 @@ package body Driver is
       Item   : Xcan_Frames.Image;
    begin
       for Nth in 1 .. Registers.Fifo_Depth loop
-         --  The cause comes again as long as there is a frame.
+         --  The flag is set again while there is a frame.
          Xcan_Core.Write (Registers.Icr, Registers.Receive_Not_Empty);
          Xcan_Core.Read (Registers.Isr, Causes);
          exit when (Causes and Registers.Receive_Not_Empty) = 0;
@@ -191,7 +193,8 @@ package body Driver is
    task body Poller is
       Last    : constant Event_Count := Schedules.Last_Release (0, Period);
       Release : Event_Count := 0;
-      --  Frames that come before the processors run would find nobody.
+      --  Wait for Start: a frame that came before the processors run would
+      --  find no reader.
       P       : Progress;
    begin
       loop

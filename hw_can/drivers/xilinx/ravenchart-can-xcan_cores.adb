@@ -54,7 +54,7 @@ is
 
    procedure Read_Frame (I : out Xcan_Frames.Image) is
    begin
-      --  The read of the last word takes the frame out.
+      --  The read of the last word removes the frame.
       Read (Xcan_Registers.Rx_Fifo, I.Identity);
       Read (Xcan_Registers.Rx_Fifo + 1, I.Layout);
       Read (Xcan_Registers.Rx_Fifo + 2, I.Data_Low);
@@ -67,7 +67,7 @@ is
 
    procedure Write_Frame (I : Xcan_Frames.Image) is
    begin
-      --  The write of the last word puts the frame in.
+      --  The write of the last word adds the frame.
       Write (Xcan_Registers.Tx_Fifo, I.Identity);
       Write (Xcan_Registers.Tx_Fifo + 1, I.Layout);
       Write (Xcan_Registers.Tx_Fifo + 2, I.Data_Low);

@@ -7,7 +7,7 @@
 --  Guarantees   each access reads or writes one whole word, once
 --  Tasking      one task, and the interrupt handler of the same controller
 --  Timing       that of the bus the controller is on; a frame four accesses
---  Assumptions  ASM-022, where the words are
+--  Assumptions  ASM-022, the address of the words
 
 with Interfaces;
 with Ravenchart.Can.Xcan_Frames;
@@ -39,18 +39,19 @@ is
 
    procedure Read_Frame (I : out Xcan_Frames.Image)
    with Global => (In_Out => Registers);
-   --  Take the oldest frame out of the receive FIFO, which has one.
+   --  Take the oldest frame out of the receive FIFO, which must hold one.
 
    procedure Write_Frame (I : Xcan_Frames.Image)
    with Global => (In_Out => Registers);
-   --  Put a frame into the transmit FIFO, which has room: it is sent behind
-   --  those before it.
+   --  Put a frame into the transmit FIFO, which must have room: it is sent
+   --  after those before it.
 
    procedure Configure (Clock, Rate : Xcan_Registers.Hertz; Done : out Boolean)
    with
      Global => (In_Out => Registers),
      Pre    => Rate > 0 and then Rate <= 2**30;
-   --  Reset the controller, and let it join the bus with that bit rate and
-   --  without filters. It stays in reset where the rate cannot be had.
+   --  Reset the controller, and let it join the bus with this bit rate and
+   --  without filters. It stays in reset where the clock does not allow the
+   --  rate.
 
 end Ravenchart.Can.Xcan_Cores;

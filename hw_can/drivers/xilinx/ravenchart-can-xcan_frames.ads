@@ -1,10 +1,10 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  Frames as the CAN controller of Zynq-7000 and Zynq UltraScale+ keeps them,
---  in its FIFOs: UG585 and UG1085, registers TXFIFO_ID to RXFIFO_DATA2.
+--  Frames in the format of the FIFOs of the CAN controller of Zynq-7000 and
+--  Zynq UltraScale+: UG585 and UG1085, registers TXFIFO_ID to RXFIFO_DATA2.
 --
---  Guarantees   what is converted there and back is the same frame; any
+--  Guarantees   a frame that is converted there and back is the same; any
 --               words have a meaning
 --  Tasking      none: values
 --  Timing       constant
@@ -40,7 +40,7 @@ is
                 then Remote_Extended else Remote_Standard)) /= 0
        then Remote else Data)
    with Global => null;
-   --  SRRRTR of an extended frame is the bit SRR, which says nothing.
+   --  SRRRTR of an extended frame is the bit SRR, which has no meaning.
 
    function Bits_Of (Identity : Word) return Word
    is (if (Identity and Extended_Bit) /= 0
@@ -62,7 +62,7 @@ is
    function Length_Of (I : Image) return Data_Length
    is (Natural'Min (8, Natural (Interfaces.Shift_Right (I.Layout, 28))))
    with Global => null;
-   --  DLC. A code above 8 stands for 8 bytes (ISO 11898-1).
+   --  DLC. A code above 8 means 8 bytes (ISO 11898-1).
 
    function Swapped (Value : Word) return Word
    is (Interfaces.Shift_Left (Value, 24)
@@ -70,14 +70,14 @@ is
        or (Interfaces.Shift_Right (Value, 8) and 16#0000_FF00#)
        or Interfaces.Shift_Right (Value, 24))
    with Global => null;
-   --  Its four bytes in the opposite order.
+   --  The four bytes of Value in the opposite order.
 
    function Data_Of (I : Image) return Interfaces.Unsigned_64
    is (Interfaces.Unsigned_64 (Swapped (I.Data_Low))
        or Interfaces.Shift_Left
             (Interfaces.Unsigned_64 (Swapped (I.Data_High)), 32))
    with Global => null;
-   --  Eight bytes, byte 0 lowest.
+   --  The eight bytes of data, byte 0 lowest.
 
    function Frame_Of (I : Image) return Frame
    is ((Id     => Id_Of (I),
@@ -89,7 +89,7 @@ is
            then 0 else Data_Of (I) and Mask (Length_Of (I)))))
    with Global => null;
    --  The frame that was received. A remote frame has no data, whatever the
-   --  words say.
+   --  words hold.
 
    function Image_Of (F : Frame) return Image
    with
@@ -100,6 +100,6 @@ is
        and then Frame_Of (Image_Of'Result).Kind = F.Kind
        and then Frame_Of (Image_Of'Result).Length = F.Length
        and then Payload (Frame_Of (Image_Of'Result)) = Payload (F);
-   --  What is written to the transmit FIFO to send F.
+   --  The words of the transmit FIFO to send F.
 
 end Ravenchart.Can.Xcan_Frames;

@@ -53,7 +53,7 @@ is
    All_Causes : constant Word :=
      Receive_Overflow or Receive_Not_Empty or Error or Went_Off
      or Transmit_Empty;
-   --  What the driver is interrupted for.
+   --  The interrupts that the driver enables.
 
    --  SR
 
@@ -90,7 +90,7 @@ is
    --  A clock, or a bit rate in bits per second.
 
    subtype Quanta_Count is Hertz range 8 .. 21;
-   --  Time quanta of a bit: with so many, no field below is too small.
+   --  Time quanta of a bit: in this range no field below is too small.
 
    type Bit_Timing is record
       Prescaler : Hertz range 1 .. 256 := 1;
@@ -102,7 +102,7 @@ is
    function Quanta (T : Bit_Timing) return Hertz
    is (1 + T.Segment_1 + T.Segment_2)
    with Global => null;
-   --  Of a bit; the first one is the synchronization segment.
+   --  The time quanta of a bit; the first one is the synchronization segment.
 
    procedure Choose_Timing
      (Clock, Rate : Hertz; T : out Bit_Timing; Found : out Boolean)
@@ -115,9 +115,9 @@ is
           and then Quanta (T) in Quanta_Count
           and then 5 * T.Segment_2 <= Quanta (T)
           and then 5 * (T.Segment_2 + 1) > Quanta (T));
-   --  The timing that gives exactly Rate, with as many quanta as there can
-   --  be, and the sample point at 80 % or behind it by less than a quantum.
-   --  None is Found where Clock is no such multiple of Rate.
+   --  The timing that gives exactly Rate, with as many quanta as possible, and
+   --  the sample point at 80 % or behind it by less than a quantum. Found is
+   --  False where Clock is no suitable multiple of Rate.
 
    function Brpr_Of (T : Bit_Timing) return Word
    is (Word (T.Prescaler - 1))

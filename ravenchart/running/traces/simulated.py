@@ -71,10 +71,10 @@ def of_simulation(system: System, lines: Iterable[str], file: str) -> Timeline:
                 raise TraceError(f"{where} {name} is left, but was not active")
             else:
                 found.slices.append(Slice(_track(found, chart, key[2]), name, before[1], now))
-    for (instance, region, place), (name, start) in active.items():
-        track = _track(found, f"{instance}.{region}", place)
+    for (instance, region, inner), (name, start) in active.items():
+        track = _track(found, f"{instance}.{region}", inner)
         found.slices.append(Slice(track, name, start, now, open=True))
-    in_order = {track: index for index, track in enumerate(_places(system.name, charts))}
+    in_order = {track: index for index, track in enumerate(_tracks(system.name, charts))}
     found.tracks.sort(key=in_order.__getitem__)
     for series in recorded.series():
         found.take(series, now)
@@ -153,13 +153,13 @@ class RecordedSeries:
             yield Series(self._process, element, Quantity.of(one.literals, one.unit), points)
 
 
-def _places(system: str, charts: Charts) -> Iterator[Track]:
-    """The tracks of all places: chart by chart, from the outside in."""
+def _tracks(system: str, charts: Charts) -> Iterator[Track]:
+    """The tracks of all regions: chart by chart, from the outside in."""
     for (instance, region), tree in charts.items():
         chart = f"{instance}.{region}"
         yield _named(system, chart, TOP)
         for state in tree.states:
-            yield from (_named(system, chart, place) for place in tree.regions_of(state))
+            yield from (_named(system, chart, one) for one in tree.regions_of(state))
 
 
 def _records(lines: Iterable[str], file: str) -> Iterator[tuple[int, StepRecord | ValueRecord]]:
@@ -197,16 +197,16 @@ def _json(line: str) -> StepRecord | ValueRecord:
     return StepRecord(Ns(at), str(raw["instance"]), str(raw["region"]), names)
 
 
-def _track(found: Timeline, chart: str, place: RegionKey) -> Track:
-    """The track of a place in a chart, which is now in the timeline."""
-    track = _named(found.system, chart, place)
+def _track(found: Timeline, chart: str, region: RegionKey) -> Track:
+    """The track of a region in a chart, which is now in the timeline."""
+    track = _named(found.system, chart, region)
     if track not in found.tracks:
         found.tracks.append(track)
     return track
 
 
-def _named(system: str, chart: str, place: RegionKey) -> Track:
-    """The track of a place in a chart: one state at most is active in it."""
-    owner, nested = place
+def _named(system: str, chart: str, region: RegionKey) -> Track:
+    """The track of a region in a chart: one state at most is active in it."""
+    owner, nested = region
     inside = "" if owner is None else f" in {owner}{'.' if nested else ''}{nested}"
     return Track(system, chart + inside)

@@ -23,7 +23,7 @@ from ravenchart.analysis.system.observed import (
 )
 from ravenchart.behaviour.interpreter.traces import StepRecord, ValueRecord
 from ravenchart.behaviour.tree import TOP, ChartTree, RegionKey
-from ravenchart.gen.model.statechart import Lane, PseudoKind, TransitionKind
+from ravenchart.gen.model.statechart import PseudoKind, TransitionKind
 from ravenchart.gen.model.system import System
 from ravenchart.running.chart_names import traced_chart
 
@@ -50,8 +50,8 @@ def observed_simulation(system: System, lines: Iterable[str], file: str) -> Obse
         for name in one.taken:
             number = top.transitions.index(name)
             seen.records.append(TraceRecord(record.at, "transition", top, number))
-        for lane, leaf in one.leaves():
-            element = elements["region", traced_chart(record.instance, record.region, lane)]
+        for key, leaf in one.leaves():
+            element = elements["region", _traced(record.instance, record.region, key)]
             number = element.leaves.index(leaf)
             seen.records.append(TraceRecord(record.at, "state", element, number))
     for series in recorded.series():
@@ -90,8 +90,8 @@ class FollowedChart:
     def _leave(self, name: str) -> None:
         """A state is left, and so is a final state in it, which no line names."""
         del self._active[self._tree.slots[name]]
-        for place in self._tree.regions_of(name):
-            self._active.pop(place, None)
+        for region in self._tree.regions_of(name):
+            self._active.pop(region, None)
 
     def _pass(self, name: str) -> None:
         """A transition; one to a final state enters it, and one to a terminate ends the chart."""
@@ -107,26 +107,26 @@ class FollowedChart:
         elif target in self._tree.states and self._tree.states[target].final:
             self._active[self._tree.slots[target]] = target
 
-    def leaves(self) -> Iterator[tuple[Lane, str]]:
+    def leaves(self) -> Iterator[tuple[RegionKey, str]]:
         """The active leaf of each region that has one, the outer regions first."""
         if self._end is not None:
-            yield self._tree.lanes[-1], self._end
+            yield TOP, self._end
             return
         yield from self._leaves_in(TOP)
 
-    def _leaves_in(self, place: RegionKey) -> Iterator[tuple[Lane, str]]:
-        state = self._active.get(place) or self._default(place)
+    def _leaves_in(self, region: RegionKey) -> Iterator[tuple[RegionKey, str]]:
+        state = self._active.get(region) or self._default(region)
         if state is None:
             return
-        if self._tree.fills_lane(state):
-            yield self._tree.lane_at(place), state
+        if self._tree.is_innermost(state):
+            yield self._tree.concurrent_region_around(region), state
         for nested in self._tree.regions_of(state):
             yield from self._leaves_in(nested)
 
-    def _default(self, place: RegionKey) -> str | None:
+    def _default(self, inner: RegionKey) -> str | None:
         """The final state that a region begins with."""
         region = self._tree.region
-        initial = region.initial if place == TOP else self._tree.nested[place].initial
+        initial = region.initial if inner == TOP else self._tree.nested[inner].initial
         state = self._tree.states.get(initial.target)
         return initial.target if state is not None and state.final else None
 
@@ -136,15 +136,15 @@ def _map(system: System, charts: Charts) -> TraceMap:
     elements: list[NumberedElement] = []
     for (instance, name), tree in charts.items():
         origin = str(tree.region.origin)
-        for lane in reversed(tree.lanes):
+        for key in reversed(tree.concurrent_regions):
             elements.append(
                 NumberedElement(
                     number=len(elements) + 1,
-                    name=traced_chart(instance, name, lane),
+                    name=_traced(instance, name, key),
                     kind="region",
                     origin=origin,
-                    leaves=tuple(_leaves_of(tree, lane)),
-                    transitions=() if lane.owner else tuple(tree.transitions),
+                    leaves=tuple(_leaves_of(tree, key)),
+                    transitions=() if key.owner else tuple(tree.transitions),
                 )
             )
     for one in system.recorded_values:
@@ -157,10 +157,14 @@ def _map(system: System, charts: Charts) -> TraceMap:
     return TraceMap(system.name, system.digest, {one.number: one for one in elements})
 
 
-def _leaves_of(tree: ChartTree, lane: Lane) -> Iterator[str]:
+def _traced(instance: str, region: str, key: RegionKey) -> str:
+    return traced_chart(instance, region, None if key.owner is None else key.name)
+
+
+def _leaves_of(tree: ChartTree, key: RegionKey) -> Iterator[str]:
     """The leaves of a region; a terminate pseudostate is one of the top-level region."""
     for state in tree.states:
-        if tree.lane_of[state] == lane and tree.fills_lane(state):
+        if tree.concurrent_region_of[state] == key and tree.is_innermost(state):
             yield state
-    if lane.owner is None:
+    if key.owner is None:
         yield from (name for name, kind in tree.kinds.items() if kind is PseudoKind.TERMINATE)

@@ -272,9 +272,10 @@ def around(instances: Sequence[Instance], name: str) -> tuple[str, str] | None:
     if not nested:
         return None
     region = next(one for one in instance.component.regions if one.name == top)
-    state = next(lane.owner for lane in region.lanes() if lane.owner and lane.name == nested)
-    lane = region.lane(state)
-    inside = "" if lane.owner is None else f".{lane.name}"
+    inner = region.concurrent_regions()
+    state = next(one.owner for one in inner if one.owner and one.name == nested)
+    outer = region.concurrent_region(state)
+    inside = "" if outer.owner is None else f".{outer.name}"
     return f"{owner}.{top}{inside}", state
 
 

@@ -32,7 +32,7 @@ package body Ravenchart.Gateways is
    --  The emulator has no bit timing: any rate joins.
 
    Period : constant := 1_000_000;
-   --  From one look to the next.
+   --  The time from one look to the next.
 
    Line_Feed           : constant Interfaces.Unsigned_8 := 10;
    End_Of_Transmission : constant Interfaces.Unsigned_8 := 4;
@@ -42,7 +42,7 @@ package body Ravenchart.Gateways is
      Import,
      Volatile,
      Address => System'To_Address (16#7000_0008#);
-   --  See Ravenchart.Boards.
+   --  The run time that the emulator sets, see Ravenchart.Boards.
 
    --  Semihosting for AArch64
 
@@ -88,10 +88,10 @@ package body Ravenchart.Gateways is
    with Priority => System.Priority'First + 1, Storage_Size => 16 * 1_024;
 
    procedure Tell;
-   --  Write what has come on the bus.
+   --  Write the frames that have come on the bus.
 
    procedure Ask;
-   --  Read what the bench says, as far as a line feed, and obey.
+   --  Read the commands of the bench, as far as a line feed, and execute them.
 
    procedure Obey (Byte : Interfaces.Unsigned_8);
    --  Take one byte of the bench.

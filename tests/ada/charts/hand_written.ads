@@ -1,8 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The chart of model.yaml as people write it: nested case statements, one
---  procedure for each composite that handles what its substates do not.
+--  The chart of model.yaml as written by hand: nested case statements, one
+--  procedure for each composite that handles the events that its substates do
+--  not handle.
 
 with Chart_Bench;
 

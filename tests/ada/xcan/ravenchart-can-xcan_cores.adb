@@ -9,7 +9,7 @@ is
    use type Interfaces.Unsigned_32;
 
    Is_Can_0 : constant Boolean := Base = 16#FF06_0000#;
-   --  Elsewhere there is no controller.
+   --  At other addresses there is no controller.
 
    procedure Read
      (From : Xcan_Registers.Register; Value : out Xcan_Registers.Word) is

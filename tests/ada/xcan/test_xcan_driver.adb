@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of the CAN controller of Zynq on a model of its registers: what
---  becomes of frames when it is bus-off, and how it comes back.
+--  The driver of the CAN controller of Zynq on a model of its registers: the
+--  frames that are lost when it is bus-off, and its recovery.
 
 with Ada.Real_Time;
 with Facts;
@@ -24,7 +24,7 @@ procedure Test_Xcan_Driver is
    Counts : Ravenchart.Can.Counters;
 
    procedure Look;
-   --  Let the driver look many times, and see what it has found.
+   --  Let the driver look many times, and read its results.
 
    procedure Send (Number : Positive);
    --  So many frames, which all find room.

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  A CAN controller of Zynq as the driver sees it, without a bus: what is sent
---  is kept, and the test says what comes and how it stands.
+--  A CAN controller of Zynq as the driver sees it, without a bus: frames that
+--  are sent are kept, and the test sets the frames that come and the state.
 
 with System;
 with Ravenchart.Can;
@@ -37,11 +37,11 @@ package Xcan_Model is
       --  A frame comes, if there is room.
 
       procedure Stand (As : Ravenchart.Can.Controller_State);
-      --  Error-passive or bus-off, or error-active again. While it is
-      --  bus-off nothing is sent.
+      --  Set the state: error-passive, bus-off, or error-active again. While
+      --  it is bus-off no frame is sent.
 
       procedure Block (Sending : Boolean);
-      --  While it is blocked nothing is sent: others have the bus.
+      --  Block or release the sending: other nodes have the bus.
 
       function Sent return Natural;
 

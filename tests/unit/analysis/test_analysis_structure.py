@@ -33,13 +33,13 @@ def test_frames_are_taken_at_their_longest(length: int, extended: bool, bits: in
 def test_the_load_of_a_bus_is_the_sum_of_its_messages() -> None:
     messages = [message("a", period=5_000_000), message("b", 2, length=0, period=10_000_000)]
     found = analyse(system([], (), [bus()], messages))
-    assert [frame.cost for frame in found.network.frames["bus"]] == [270_000, 110_000]
+    assert [frame.transmission_time for frame in found.network.frames["bus"]] == [270_000, 110_000]
     assert found.bus_load(bus()) == Fraction(27, 500) + Fraction(11, 1000)
 
 
 def test_frame_times_round_up() -> None:
     found = analyse(system([], (), [bus(bit_rate=300_000)], [message("a", length=0)]))
-    assert found.network.frames["bus"][0].cost == 183_334
+    assert found.network.frames["bus"][0].transmission_time == 183_334
 
 
 def test_the_graph_holds_every_kind_of_edge_in_its_direction() -> None:

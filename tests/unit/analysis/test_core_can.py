@@ -44,7 +44,10 @@ def lists_of_frames(queues: bool) -> st.SearchStrategy[list[Frame]]:
 @pytest.mark.parametrize(
     ("made", "message"),
     [
-        (lambda: frame("m", 1, 0, 9), "cost of message m must be an integer above 0, not 0"),
+        (
+            lambda: frame("m", 1, 0, 9),
+            "transmission_time of message m must be an integer above 0, not 0",
+        ),
         (lambda: frame("m", 1, 1, -9), "period of message m must be an integer above 0, not -9"),
         (lambda: frame("m", 1, 1, 9, jitter=-1), "jitter of message m must be an integer from 0"),
         (lambda: analyse([frame("m", 1, 1, 9)] * 2, BUS), "two messages have the name m"),
@@ -218,7 +221,12 @@ def test_a_queue_never_shortens_a_response_and_terms_add_up(
         parts = queued.blocked + queued.own + queued.errors
         assert parts + sum(i.time for i in queued.interference) == queued.window
         item = queued.frame
-        total = item.jitter + queued.window + item.cost - queued.worst_instance * item.period
+        total = (
+            item.jitter
+            + queued.window
+            + item.transmission_time
+            - queued.worst_instance * item.period
+        )
         assert total == queued.bound
 
 
@@ -241,7 +249,7 @@ def test_an_overloaded_bus_is_the_reason_why_a_queue_has_no_bound(reloaded: bool
     ]
     for found in analyse([*queued, Frame("c", 9, 100, 100, 1)], Bus(1)):
         assert found.bound is None
-        assert found.reason in (Reason.OVERLOAD, Reason.RIVAL)
+        assert found.reason in (Reason.OVERLOAD, Reason.DELAYED)
         if found.frame.queue:
             assert found.reason is Reason.OVERLOAD
             assert found.level.load == Fraction(121, 100)

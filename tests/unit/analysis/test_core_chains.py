@@ -180,7 +180,7 @@ def test_what_is_released_without_bound_takes_those_below_with_it() -> None:
     assert reasons == {
         **dict.fromkeys(("full", "above", "p")),
         "late": Reason.OVERLOAD,
-        **dict.fromkeys(("after", "below", "m", "n"), Reason.RIVAL),
+        **dict.fromkeys(("after", "below", "m", "n"), Reason.DELAYED),
     }
 
 

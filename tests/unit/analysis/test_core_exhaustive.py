@@ -384,7 +384,11 @@ def test_frames_on_a_bus_are_safe_and_exact_a_tick_earlier(
         seen = observed([replace(toy, preemptible=False) for toy in toys(chosen)])
         assert at_least([r.bound for r in can.analyse(frames, bus)], seen), chosen
         for n, frame in enumerate(frames):
-            lower = [replace(f, cost=f.cost - 1) for f in frames[n + 1 :] if f.cost > 1]
+            lower = [
+                replace(f, transmission_time=f.transmission_time - 1)
+                for f in frames[n + 1 :]
+                if f.transmission_time > 1
+            ]
             assert can.response_under(frame, frames[:n], lower, bus).bound == seen[n], chosen
     assert compared == number
 

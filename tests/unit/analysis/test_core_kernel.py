@@ -123,12 +123,12 @@ def test_any_levels_are_answered() -> None:
     for _ in range(300):
         count = rng.randint(2, 9)
         periods = [rng.randint(1, 40) for _ in range(count)]
-        costs = [rng.randint(1, period) for period in periods]
+        wcets = [rng.randint(1, period) for period in periods]
         last = [rng.randint(n, count - 1) for n in range(count)]
         blocked = [rng.randint(0, 9) for _ in range(count)]
-        for n, w in enumerate(kernel.busy_periods(periods, costs, last, blocked)):
+        for n, w in enumerate(kernel.busy_periods(periods, wcets, last, blocked)):
             level = range(last[n] + 1)
-            assert w == 0 or blocked[n] + sum(-(-w // periods[j]) * costs[j] for j in level) <= w
+            assert w == 0 or blocked[n] + sum(-(-w // periods[j]) * wcets[j] for j in level) <= w
 
 
 def test_full_to_the_brim_and_a_tick_more() -> None:
@@ -167,4 +167,4 @@ def test_what_is_not_plain_is_left_to_the_general_analysis() -> None:
     ):
         compare([*plain, other])
     compare(plain, platform=Platform(release=1))
-    compare(plain, platform=Platform(tick_period=100, tick_cost=1))
+    compare(plain, platform=Platform(tick_period=100, tick_wcet=1))

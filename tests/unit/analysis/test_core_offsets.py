@@ -116,7 +116,7 @@ def test_jitter_brings_jobs_together_that_offsets_keep_apart() -> None:
 
 def test_overheads_count_as_without_offsets() -> None:
     """Two switches a job, two releases of each in the window, a tick for every four units."""
-    platform = Platform(context_switch=1, release=1, tick_period=50, tick_cost=1)
+    platform = Platform(context_switch=1, release=1, tick_period=50, tick_wcet=1)
     a, b = task("a", 2, 4, 100, 0), task("b", 1, 3, 100, 50)
     response = found(a, b, platform=platform)["b"]
     assert response.bound == 3 + 2 + 1 + 1

@@ -109,7 +109,9 @@ def test_frames(case: Any) -> None:
         assert response.blocked == ns(expected["B"])
         assert response.instances == expected["instances"]
         assert response.worst_instance == expected.get("worst_instance", 0)
-        assert response.frame.cost * case["bit_rate_kbit"] == expected["C_bits"] * 10**6
+        assert (
+            response.frame.transmission_time * case["bit_rate_kbit"] == expected["C_bits"] * 10**6
+        )
     assert round(float(can.load(frames)), 6) == float(case["utilisation"])
 
 
@@ -118,14 +120,15 @@ def first_instance_only(frames: list[Frame], bus: Bus) -> dict[str, int]:
     found = {}
     for frame in frames:
         urgent = [f for f in frames if f.rank < frame.rank]
-        blocked = max((f.cost for f in frames if f.rank > frame.rank), default=0)
+        blocked = max((f.transmission_time for f in frames if f.rank > frame.rank), default=0)
         wait, settled = -1, blocked
         while wait != settled:
             wait = settled
             settled = blocked + sum(
-                -(-(f.jitter + wait + bus.bit_time) // f.period) * f.cost for f in urgent
+                -(-(f.jitter + wait + bus.bit_time) // f.period) * f.transmission_time
+                for f in urgent
             )
-        found[frame.name] = frame.jitter + wait + frame.cost
+        found[frame.name] = frame.jitter + wait + frame.transmission_time
     return found
 
 

@@ -38,7 +38,7 @@ def task(name: str, priority: int, wcet: int, period: int, **more: Any) -> Task:
         (lambda: TableRow("r", 0), "wcet of row r must be an integer above 0, not 0"),
         (lambda: TableRow("r", 1, 2, 2), "phase of row r must be below 2, not 2"),
         (lambda: Section("o", "a", 0), "length of the section of a on o must be an integer above"),
-        (lambda: Platform(tick_cost=1), "tick_period of the platform must be above 0"),
+        (lambda: Platform(tick_wcet=1), "tick_period of the platform must be above 0"),
         (lambda: Platform(release=-1), "release of the platform must be an integer from 0 up"),
         (lambda: analyse_tasks([task("a", 1, 1, 9)] * 2), "two tasks have the name a"),
         (
@@ -84,9 +84,9 @@ def test_equal_priorities_interfere_both_ways_and_do_not_block() -> None:
 
 
 def test_one_tick_past_the_deadline_is_a_miss() -> None:
-    rival = task("a", 2, 3, 10)
+    interfering = task("a", 2, 3, 10)
     for wcet, met in ((4, True), (5, False)):
-        assert analyse_tasks([rival, task("b", 1, wcet, 20, deadline=7)])[1].met == met
+        assert analyse_tasks([interfering, task("b", 1, wcet, 20, deadline=7)])[1].met == met
 
 
 def test_tasks_of_other_cores_do_not_meet() -> None:
@@ -117,7 +117,7 @@ def test_sections_block_on_their_own_core_only() -> None:
 
 
 def test_overheads_by_hand() -> None:
-    platform = Platform(context_switch=1, release=2, tick_period=50, tick_cost=3)
+    platform = Platform(context_switch=1, release=2, tick_period=50, tick_wcet=3)
     tasks = [task("a", 2, 10, 100, timed=True), task("b", 1, 20, 200)]
     #  b: 20 + 2 switches; a: 10 + 2, once for w <= 50; a tick in 50; a release of each
     a, b = analyse_tasks(tasks, (), {"": platform})
@@ -292,9 +292,9 @@ def test_one_response_alone_is_the_same(
     tasks, sections, platform = system
     held = blockers(tasks, sections)
     for r in analyse_tasks(tasks, sections, {"": platform}):
-        rivals = [t for t in tasks if t.priority >= r.task.priority and t is not r.task]
+        interfering = [t for t in tasks if t.priority >= r.task.priority and t is not r.task]
         below = [t for t in tasks if t.priority < r.task.priority]
-        alone = response_under(r.task, rivals, below, held.get(r.task.name), platform)
+        alone = response_under(r.task, interfering, below, held.get(r.task.name), platform)
         assert (alone.bound, alone.window, alone.alignment) == (r.bound, r.window, r.alignment)
 
 

@@ -136,7 +136,10 @@ def with_shorter_jobs(network: Network, chance: random.Random) -> Network:
             for task in network.tasks
         ),
         frames={
-            bus: tuple(replace(f, cost=chance.randint(max(1, f.best), f.cost)) for f in some)
+            bus: tuple(
+                replace(f, transmission_time=chance.randint(max(1, f.best), f.transmission_time))
+                for f in some
+            )
             for bus, some in network.frames.items()
         },
     )

@@ -45,7 +45,10 @@ def on_bus(bus: Bus, *frames: Frame) -> Network:
         (
             on_bus(
                 Bus(1),
-                *(replace(FRAME, name=n, rank=k, cost=600, queue="q") for k, n in enumerate("ab")),
+                *(
+                    replace(FRAME, name=n, rank=k, transmission_time=600, queue="q")
+                    for k, n in enumerate("ab")
+                ),
             ),
             "",
             "a has no bound in its queue, so there is none",
@@ -66,7 +69,7 @@ def on_bus(bus: Bus, *frames: Frame) -> Network:
         (
             Network(
                 (replace(TASK, name="_tick"), TASK),
-                platforms={"": Platform(tick_period=50, tick_cost=1)},
+                platforms={"": Platform(tick_period=50, tick_wcet=1)},
             ),
             "cheddar pycpa",
             "overheads become tasks of their own, and two tasks or messages have the name _tick",
@@ -190,7 +193,9 @@ def test_without_queues_no_bound_is_smaller() -> None:
         chance = random.Random(seed)
         network = random_network(chance)
         frames = {
-            bus: tuple(replace(f, queue="p", best=chance.choice((0, f.cost))) for f in some)
+            bus: tuple(
+                replace(f, queue="p", best=chance.choice((0, f.transmission_time))) for f in some
+            )
             for bus, some in network.frames.items()
         }
         network = replace(network, frames=frames)

@@ -117,7 +117,7 @@ def test_only_what_the_host_withheld_is_excused() -> None:
     long = Execution("arm.move", observed=1_400, wcet=1_000)
     assert expected.counted(shown, (late,), (long,), ENDED) == {}
     assert expected.not_judged((late,), (long,), (), ENDED) == (
-        "the host withheld the core for up to 0.0 ms"
+        "the host withheld the core for up to 0.4 us"
     )
     less = replace(late, withheld=399)
     assert expected.counted(shown, (less,), (long,), ENDED) == {
@@ -131,7 +131,7 @@ def test_a_reaction_is_excused_for_what_the_host_withheld_at_each_place() -> Non
     delayed = Comparison("control", 100, 0, observed=400, bound=500, withheld=100)
     slow = Journey("flow", 9, observed=1_300, bound=1_000, limit=2_000, places=3)
     slower = replace(slow, observed=1_301)
-    ended = "the host withheld the core for up to 0.0 ms"
+    ended = "the host withheld the core for up to 0.1 us"
     assert list(judge.failures(ENDED, None, None, (), (delayed,), (slow,))) == []
     assert expected.not_judged((delayed,), (), (slow,), ENDED) == ended
     (why,) = judge.failures(ENDED, None, None, (), (delayed,), (slower,))

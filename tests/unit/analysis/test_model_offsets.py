@@ -227,7 +227,7 @@ def test_analysis_and_certificate_find_the_same_instants(monkeypatch: pytest.Mon
 
     def noted(self: OffsetSearch, reach: int) -> list[tuple[int, int]]:
         found = followed(self, reach)
-        told.append((self.plain.task.name, reach, found, self.rivals.cycle))
+        told.append((self.plain.task.name, reach, found, self.interference.cycle))
         return found
 
     monkeypatch.setattr(OffsetSearch, "followed", noted)

@@ -75,7 +75,7 @@ def test_an_execution_above_its_wcet_fails_and_is_named(
     path = trace(tmp_path, f"A {number} 999999999\nEND\n")
     assert main(["analyse", str(MODEL), "--observed", path]) == WRONG
     found = capsys.readouterr().out
-    assert f"{first}: 1000 ms, ABOVE its WCET of " in found
+    assert f"{first}: 1 s, ABOVE its WCET of " in found
     for name, _ in others:
         assert f"{name}: not executed in this run" in found
 

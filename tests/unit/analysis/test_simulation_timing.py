@@ -250,7 +250,7 @@ def test_every_frame_attains_its_bound_but_for_one_bit_of_blocking() -> None:
             seen = simulate(Network((), {"": frames}, {"": bus}), case.scenario, case.until)
             frame, level = response.frame, response.level
             lower = [
-                replace(f, cost=f.cost - 1)
+                replace(f, transmission_time=f.transmission_time - 1)
                 for f in level.order[level.reach :]
                 if f.name == response.blocker
             ]

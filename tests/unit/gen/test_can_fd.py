@@ -53,7 +53,7 @@ def test_a_frame_takes_what_its_bits_take_at_their_rates(text: str, bits: int) -
     assert (message.length, message.signals[-1].start) == (48, 19 * 16)
     found = analyse(system)
     frames = {frame.name: frame for some in found.network.frames.values() for frame in some}
-    assert frames[message.element].cost == bits
+    assert frames[message.element].transmission_time == bits
 
 
 def test_a_frame_of_up_to_eight_bytes_may_be_fd_too() -> None:

@@ -10,12 +10,14 @@ import pytest
 from ravenchart.gen.language.terms import InState, Name, Operation, Raise, Reading, Set
 from ravenchart.gen.model.statechart import (
     DONE,
+    TOP,
     After,
     Completion,
     Every,
     OnEvent,
     Overflow,
     PseudoKind,
+    RegionId,
     Segment,
     TransitionKind,
 )
@@ -64,7 +66,7 @@ def test_states_and_pseudostates_stand_in_tree_order() -> None:
     pseudo = region.pseudostates[0]
     assert (pseudo.name, pseudo.kind) == ("R_Hist", PseudoKind.DEEP_HISTORY)
     assert (pseudo.parent, pseudo.region) == ("R2", "")
-    assert [lane.name for lane in region.lanes()] == ["Left", "Right", "Motion"]
+    assert [one.name for one in region.concurrent_regions()] == ["Left", "Right", ""]
 
 
 def test_regions_begin_with_their_effects() -> None:
@@ -94,7 +96,7 @@ def test_one_region_in_regions_is_a_composite_state_with_a_named_region() -> Non
     )
     assert not region.state("A").is_orthogonal
     assert region.state("B").region == "Only"
-    assert len(region.lanes()) == 1
+    assert region.concurrent_regions() == (TOP,)
 
 
 def test_triggers_are_told_by_their_keys() -> None:
@@ -318,8 +320,8 @@ def test_invariants_speak_of_states_and_data() -> None:
     assert refused == [("RV-0404", "`far` takes a condition, but this is a number")]
 
 
-def test_lane_begins_in_the_orthogonal_state_around_its_initial_target() -> None:
+def test_a_region_begins_in_the_orthogonal_state_around_its_initial_target() -> None:
     region = region_of(chart_text(BOTH, MOVES, region="initial: R22\nqueue: 4"))
-    assert region.default_of(None) == "Both"
-    assert region.default_of("Both", "Right") == "R1"
+    assert region.default_of(TOP) == "Both"
+    assert region.default_of(RegionId("Both", "Right")) == "R1"
     assert region.default_leaf("R2") == "R21"

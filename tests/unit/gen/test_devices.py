@@ -90,7 +90,7 @@ def test_what_stands_in_is_there_while_nothing_provides_the_command() -> None:
     system = _system({})
     text = _text(system)
     assert "Estimated_Board.Read (Get_Velocity_Value);" in text
-    assert any("estimate_stand_in" in name for name in user_units(system))
+    assert any("estimate_fallback" in name for name in user_units(system))
 
 
 def test_nothing_is_left_of_a_stand_in_where_the_command_is_provided() -> None:

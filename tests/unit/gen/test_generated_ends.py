@@ -10,7 +10,7 @@ import re
 from ravenchart.gen.emit.ada.declarations import Unit
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.charts.declared import emit_region
-from ravenchart.gen.emit.language.places import Places
+from ravenchart.gen.emit.language.configurations import Configurations
 from tests.support.interpreted import chart_system
 
 CHART = """
@@ -31,6 +31,6 @@ def test_a_state_around_a_terminate_is_not_active_in_it() -> None:
     (region,) = component.regions
     spec, _ = emit_region(system, component, region, "")
     assert "when Away => Leaf in Main_States.Inside" in print_unit(spec)
-    states = print_unit(Unit("", (), Places(region).package_of_states(system.origin)))
+    states = print_unit(Unit("", (), Configurations(region).package_of_states(system.origin)))
     assert re.search(r"type Leaf is\s+\(Idle, .*\s+Busy, .*\s+Stop\b", states)
     assert "subtype Inside is Leaf range Busy .. Busy;" in states

@@ -28,7 +28,7 @@ ACROSS = region(
     "near: {from: Way, to: A, guard: else}\n"
     "stop: {from: C, to: A, on: Stop, effect: [{set: count, to: 0}]}",
 )
-LANES = region(
+TWO = region(
     "Main",
     "{A: {regions: {Left: {initial: L1, states: {L1: {}, L2: {entry: [{set: armed, to: true}]}}}, "
     "Right: {initial: R1, states: {R1: {}, R2: {}}}}}}",
@@ -118,20 +118,20 @@ def test_data_that_nothing_writes_are_constants() -> None:
     assert proved(model(ACROSS, never="{armed: in(Main.C) and armed}")) == ["armed"]
 
 
-def test_a_guard_that_an_earlier_lane_may_break_is_not_relied_on() -> None:
+def test_a_guard_that_an_earlier_region_may_break_is_not_relied_on() -> None:
     """``right`` asks for ``armed``, which ``reset`` takes back in the same step."""
-    assert proved(model(LANES, never="{unarmed: in(Main.R2) and in(Main.L1) and not armed}")) == []
+    assert proved(model(TWO, never="{unarmed: in(Main.R2) and in(Main.L1) and not armed}")) == []
 
 
 def test_a_guard_is_relied_on_where_the_transition_is_alone() -> None:
-    chart = LANES.replace("when: level > 5", "on: Stop").replace("to: false", "to: true")
+    chart = TWO.replace("when: level > 5", "on: Stop").replace("to: false", "to: true")
     system = model(chart, never="{early: in(Main.R2) and not armed}")
     assert proved(system) == ["early"]
     assert contracts(system).regions[0].alone == ("right",)
 
 
 def test_a_region_that_is_too_large_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(moves, "MOST_PLACES", 2)
+    monkeypatch.setattr(moves, "MOST_POSITIONS", 2)
     assert "its region is too large" in reasons(model(ACROSS, never="{much: count > 7}"))[0]
     monkeypatch.undo()
     monkeypatch.setattr(inductive, "MOST_QUESTIONS", 1)

@@ -50,7 +50,7 @@ def responses(system: System) -> list[tuple[int, int]]:
     found = analyse(system)
     frames = found.frames(system.buses[0])
     assert all(one.bound is not None for one in frames)
-    return [(one.frame.cost, one.bound or 0) for one in frames]
+    return [(one.frame.transmission_time, one.bound or 0) for one in frames]
 
 
 def test_by_priority_the_most_urgent_frame_waits_for_one_other_at_most() -> None:

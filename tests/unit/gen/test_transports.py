@@ -75,7 +75,7 @@ def test_the_value_is_cut_as_the_standard_says(tmp_path: Path) -> None:
     assert items["line.table_Flow"].period == 5 * MS
     assert items["line.report_Flow"].period == 4 * MS
     frames = {frame.name: frame for frame in analysis.network.frames["line"]}
-    assert frames["line.report"].cost == frames["line.table_Flow"].cost
+    assert frames["line.report"].transmission_time == frames["line.table_Flow"].transmission_time
 
 
 def _played(one: Transfer, chance: random.Random, *, worst: bool) -> int:

@@ -335,8 +335,8 @@ def test_what_the_host_is_known_to_have_withheld_is_not_held_against_the_control
 @pytest.mark.parametrize(
     ("region", "state", "limit", "row"),
     [
-        ("joint_x.Motion", "Drive", 0.1, (True, "after 60.0 ms", 0.1)),
-        ("joint_x.Motion", "Drive", 0.05, (False, "after 60.0 ms", 0.1)),
+        ("joint_x.Motion", "Drive", 0.1, (True, "after 60 ms", 0.1)),
+        ("joint_x.Motion", "Drive", 0.05, (False, "after 60 ms", 0.1)),
         ("joint_x.Motion", "Drive", None, (True, "at 0.100 s", 0.1)),
         ("joint_x.Motion", "Limit", None, (False, "never: it visited Idle, Drive", 0.0)),
         ("a.B", "C", None, (False, "the trace map has no region a.B", 0.0)),

@@ -53,7 +53,7 @@ def test_virtual_passes_and_says_what_it_cannot(capsys: pytest.CaptureFixture[st
     printed = " ".join(capsys.readouterr().out.split())
     assert status == 0, printed
     assert "PASS: 16 passed, 0 failed, 4 skipped" in printed
-    assert "skipped 0.00 the bus was opened without --fd" in printed
+    assert "skipped 0.000 the bus was opened without --fd" in printed
     assert "python-can's virtual tells no state" in printed
 
 

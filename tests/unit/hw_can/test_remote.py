@@ -106,7 +106,7 @@ def test_a_state_from_before_the_command_does_not_count(near: RemoteSystem, far:
     assert near.wait_for("condition", "Failed", 2) >= 0
     near.send("Home", **ZERO)
     near.wait_for("condition", "Ready", 2)
-    with pytest.raises(NoAnswerError, match=r"was not Failed within 0\.1 s: last Ready, 0.*s ago"):
+    with pytest.raises(NoAnswerError, match=r"was not Failed within 0\.1 s: last Ready, .*s ago"):
         near.wait_for("condition", "Failed", 0.1)
 
 
@@ -132,7 +132,7 @@ def test_without_an_answer_the_error_says_what_came_last(near: RemoteSystem, far
     )
     far.say(*status("Failed"))
     near.wait_for("condition", "Failed", 2)
-    with pytest.raises(TimeoutError, match=r"was not Ready within 0.05 s: last Failed, 0\.\d\d s"):
+    with pytest.raises(TimeoutError, match=r"was not Ready within 0.05 s: last Failed, .* ms ago"):
         asyncio.run(near.state("condition", "Ready", timeout=0.05))
 
 

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.support import prose
@@ -36,6 +38,33 @@ def test_questions_code_and_links_are_no_offence() -> None:
     question, rest = prose.sentences("here", text.replace("a lane", "a region"))
     assert not list(complaints(question)) and not list(complaints(rest))
     assert rest.length == 4
+
+
+def test_comments_of_ada_are_texts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(prose, "ROOT", tmp_path)
+    monkeypatch.setattr(prose, "ADA", (".",))
+    (tmp_path / "a.ads").write_text(
+        "--  SPDX-License-Identifier: Apache-2.0\n\n"
+        "--  First\n--  line. Second.\n--\n"
+        "--  Guarantees   one\n--               text\n--  Timing       none\n--\n"
+        "--     row      of a table,\n--              continued\n--     other row\n\n"
+        "   ---------\n   -- Box --\n   ---------\n\n"
+        '   A : String := "--  no";  --  [a.tell] see b.tell and\n'
+        "                            --  the next line\n"
+        "   B : Character := '-';  --  another\n"
+        "   --  one more\n"
+    )
+    assert [(one.location, one.text) for one in prose.of_ada()] == [
+        ("a.ads:3", "First line."),
+        ("a.ads:3", "Second."),
+        ("a.ads:6", "one text"),
+        ("a.ads:8", "none"),
+        ("a.ads:10", "row of a table, continued"),
+        ("a.ads:12", "other row"),
+        ("a.ads:18", "see X and the next line"),
+        ("a.ads:20", "another"),
+        ("a.ads:21", "one more"),
+    ]
 
 
 def test_every_exception_is_needed() -> None:

@@ -141,12 +141,14 @@ def test_without_the_state_the_error_says_the_last_one(
     trace = "the snapshots of controller have no such chart\n  hint: give the node the key `trace`"
     assert str(silent.value) == text + trace
     controller.says(Mission="Homing", lost=3)
-    with pytest.raises(TimeoutError, match=r"last Homing for 0\.\d\d s, seen 0\.\d\d s ago; 3 tr"):
+    with pytest.raises(TimeoutError, match=r"last Homing for .* ms, seen .* ms ago; 3 tr"):
         asyncio.run(near.state("Mission", "Ready", timeout=0.05))
     controller.says(Mission="Homing")
     owner.close()
     began = time.monotonic()
-    with pytest.raises(NoAnswerError, match=r"the controller has ended; last Homing for 0\.50 s$"):
+    with pytest.raises(
+        NoAnswerError, match=r"the controller has ended; last Homing for 50\d(\.\d)? ms$"
+    ):
         near.wait_for("Mission", "Ready", 30)
     assert time.monotonic() - began < 10
 
@@ -212,12 +214,12 @@ def test_the_shell_waits_for_states_and_shows_them(
     assert shell.do("status Mission joint_x.Motion")
     head, mission, motion = out.getvalue().splitlines()
     assert head.split() == ["chart", "age", "s", "state"]
-    assert mission.split()[0] == "coordinator.Mission" and "Homing for 0." in mission
+    assert mission.split()[0] == "coordinator.Mission" and "Homing for " in mission
     assert motion.split()[0] == "joint_x.Motion" and "no active state" in motion
     later(0.1, controller, "Ready")
     assert shell.do("wait_for Mission Ready 2 s")
     assert shell.do("status")
-    assert "Mission is Ready after 0." in out.getvalue()
+    assert "Mission is Ready after " in out.getvalue()
     assert out.getvalue().splitlines()[-1].split()[2] == "Ready"
 
 

@@ -253,7 +253,7 @@ def test_each_state_in_a_declared_form_is_found_when_it_is_altered(tmp_path: Pat
     home = _copied("qhsmtst", tmp_path)
     path = home / "generated/qhsm_test-qhsm-chart.ads"
     text = path.read_text(encoding="utf-8")
-    begin, end = text.index("function In_Source"), text.index("function Is_Selection")
+    begin, end = text.index("function In_Source"), text.index("type Variables")
     names = [m for m in re.finditer(r"Chart_States\.(\w+)", text) if begin < m.end() < end]
     places = [m for m in names if m[1] not in ("Leaf", "Configuration")]
     assert len(places) > 10

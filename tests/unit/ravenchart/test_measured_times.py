@@ -130,7 +130,7 @@ def test_the_table_says_what_it_is(system: System) -> None:
     console = Console(file=out, width=80, highlight=False)
     summary.print_measurement(console, measurement(system, {ROW: 300_001}))
     text = " ".join(out.getvalue().split())
-    assert f"{ROW} 300.1 360.1 300 100 % ABOVE" in text
+    assert f"{ROW} 300.001 361 300 100.0004 % ABOVE" in text
     assert "Measured in one run, and no bounds" in text
     assert "Times are its clock." in text
     assert "Not executed: ward.receive, bed.ports" in text
@@ -139,12 +139,12 @@ def test_the_table_says_what_it_is(system: System) -> None:
     assert all(len(line) <= 80 for line in out.getvalue().splitlines())
 
 
-def test_a_time_above_its_claim_is_an_error_where_the_claim_is(system: System) -> None:
+def test_a_time_above_its_wcet_is_an_error_where_the_wcet_is(system: System) -> None:
     found = measurement(system, {ROW: 300_001})
     (text,) = bounds.findings(found.rows, {}, system)
     place = measured.origin_of(system, ROW)
     assert text.splitlines() == [
-        f"{place}: error: {ROW} was measured to take 300.1 us, above its `wcet` of 300 us",
+        f"{place}: error: {ROW} was measured to take 300.001 us, above its `wcet` of 300 us",
         f"{place}: hint: write `wcet: 360.1 us` or more",
     ]
     assert list(bounds.findings(measurement(system, {ROW: 300_000}).rows, {}, system)) == []
@@ -155,7 +155,7 @@ def test_a_bound_that_a_measurement_refutes_is_an_error(system: System) -> None:
     found = measurement(system, {ROW: 10_001}, bound)
     (text,) = bounds.findings(found.rows, bound, system)
     assert text.startswith(
-        f"b.csv:2: error: {ROW} was measured to take 10.1 us, above its bound of 10 us\n"
+        f"b.csv:2: error: {ROW} was measured to take 10.001 us, above its bound of 10 us\n"
     )
     equal = measurement(system, {ROW: 10_000}, bound)
     assert not any(one.words for one in equal.rows)
@@ -253,9 +253,9 @@ def test_a_bound_above_its_wcet_is_an_error_with_both_places(
     file.write_text(f"row,wcet_us\n{ROW},300.01\n", encoding="utf-8")
     assert main(["analyse", str(PUMP / "model.yaml"), "--bounds", str(file)]) == WRONG
     found = capsys.readouterr()
-    assert f"{ROW}: bound 300.1 us, ABOVE its WCET of 300 us\n" in found.out
+    assert f"{ROW}: bound 300.01 us, ABOVE its WCET of 300 us\n" in found.out
     first, note, hint = found.err.splitlines()[-3:]
-    assert first == f"{file}:2: error: the bound of {ROW}, 300.1 us, is above its `wcet` of 300 us"
+    assert first == f"{file}:2: error: the bound of {ROW}, 300.01 us, is above its `wcet` of 300 us"
     assert note.endswith(f": note: the `wcet` of {ROW} is here")
     assert hint.endswith(": hint: write `wcet: 300.1 us` or more")
     line = int(note.split(":")[1])

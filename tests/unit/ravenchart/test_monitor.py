@@ -88,7 +88,7 @@ def test_an_older_program_reports_no_last_response(analysis: Analysis) -> None:
     assert [one.last_response for one in node.processors] == [None, None]
     assert node.queues == [] and node.not_seen[-1] == OLDER_PROGRAM
     (line,) = [line for line in printed(node) if line.startswith("control")]
-    assert line.split()[4:6] == ["-", "401.2"]
+    assert line.split()[4:6] == ["-", "402"]
 
 
 def test_the_queue_of_a_chart_has_its_fill_beside_its_depth(analysis: Analysis) -> None:
@@ -252,7 +252,7 @@ def test_lines_for_a_pipe(analysis: Analysis) -> None:
     counts = list(monitor_text.lines(node, "board", counts=True))[1:]
     assert counts[-1] == "board 2.000 ward.lost_out lost 3"
     assert any(
-        "control processor due 41 completed 40 misses 0 last 301.2 us worst 401.2 us" in c
+        "control processor due 41 completed 40 misses 0 last 302 us worst 402 us" in c
         for c in counts
     )
 

@@ -84,7 +84,7 @@ def wishes(
         if stimuli and chance.random() < 0.5:
             entry = chance.choice(stimuli).drawn(Ns(0), chance)
             value = None if entry.value is None else given(entry.value)
-            instance, what = entry.place
+            instance, what = entry.receiver
             if isinstance(entry, Raised):
                 found.append(
                     RaiseWish(kind="raise", instance=instance, event=what, value=value, number=0)

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from ravenchart import rounded
 from ravenchart.paths import ROOT
 from ravenchart.workbench.requests import Move, SetTime
 from ravenchart.workbench.session import Session
@@ -102,9 +103,9 @@ def test_the_figures_that_a_change_moves_are_those_of_the_analysis(
 
 
 def agree(page: Figures, command: Figures) -> bool:
-    """The same bounds; loads are rounded up to a tenth of a per cent."""
-    loads = {name: -(-load * 1000 // 1) / 10 for name, load in command["loads"].items()}
-    assert {name: f"{float(load):.1f} %" for name, load in loads.items()} == page["loads"]
+    """The same bounds, and loads as the terminal has them."""
+    loads = {name: rounded.percent(load) for name, load in command["loads"].items()}
+    assert loads == page["loads"]
     assert page["messages"] == command["messages"]
     assert page["chains"] == command["chains"]
     return True

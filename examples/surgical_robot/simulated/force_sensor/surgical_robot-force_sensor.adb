@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  A simulated device of the model of Surgical_Robot, written once by
---  ravenchart as a starting point: it is yours.
+--  ravenchart as a starting point. The file is yours to change.
 
 package body Surgical_Robot.Force_Sensor
 with SPARK_Mode

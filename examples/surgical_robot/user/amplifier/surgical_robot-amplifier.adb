@@ -14,7 +14,7 @@ is
 
    procedure Set_No_Current (Unit : Amplifier_Units.Unit)
    with Global => (In_Out => Amplifier_Registers.Registers);
-   --  On both axes.
+   --  Set no current on both axes.
 
    procedure Set_No_Current (Unit : Amplifier_Units.Unit) is
    begin

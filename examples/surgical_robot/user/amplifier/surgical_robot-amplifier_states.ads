@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of an amplifier remembers nothing.
+--  The driver of an amplifier keeps no state.
 
 package Surgical_Robot.Amplifier_States
 with SPARK_Mode

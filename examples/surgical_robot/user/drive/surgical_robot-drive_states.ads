@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of the drives remembers nothing: they have a servo loop.
+--  The driver of the drives keeps no state: they have a servo loop.
 
 package Surgical_Robot.Drive_States
 with SPARK_Mode

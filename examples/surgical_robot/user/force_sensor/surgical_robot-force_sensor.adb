@@ -15,10 +15,10 @@ is
    Start     : constant Words.Word := 1;
    Done      : constant Words.Word := 1;
    Zero      : constant := 2**15;
-   --  Of the converter.
+   --  the value of the converter without force
    Strongest : constant := 5_000;  --  mN
    Tries     : constant := 8;
-   --  Looks until a conversion is done.
+   --  The most looks until a conversion is done.
 
    procedure Convert
      (Unit   : Force_Sensor_Units.Unit;

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  An I/O board: encoders that count in two's complement, and converters
---  whose middle is no current.
+--  An I/O board: encoders that count in two's complement, and converters whose
+--  middle value is no current.
 
 with Surgical_Robot.Words;
 
@@ -14,7 +14,7 @@ is
 
    Enabled  : constant Words.Word := 1;
    Sound    : constant Words.Word := 1;
-   Farthest : constant := 3_000;  --  mrad, where a joint has its stop
+   Farthest : constant := 3_000;  --  mrad, the stop of a joint
 
    function Position
      (Unit : Io_Board_Units.Unit; Count : Words.Word) return Angle
@@ -23,7 +23,7 @@ is
 
    procedure Set_No_Current (Unit : Io_Board_Units.Unit)
    with Global => (In_Out => Io_Board_Registers.Registers);
-   --  On both axes.
+   --  Set no current on both axes.
 
    function Position
      (Unit : Io_Board_Units.Unit; Count : Words.Word) return Angle

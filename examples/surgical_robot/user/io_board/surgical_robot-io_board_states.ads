@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of an I/O board remembers nothing: all is in its registers.
+--  The driver of an I/O board keeps no state: all of it is in the registers.
 
 package Surgical_Robot.Io_Board_States
 with SPARK_Mode

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of a tachometer remembers nothing.
+--  The driver of a tachometer keeps no state.
 
 package Surgical_Robot.Tachometer_States
 with SPARK_Mode

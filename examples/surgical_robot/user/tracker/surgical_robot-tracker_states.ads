@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The driver of the tracker remembers nothing.
+--  The driver of the tracker keeps no state.
 
 package Surgical_Robot.Tracker_States
 with SPARK_Mode

@@ -2,7 +2,7 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  A simulated device of the model of Gripper_Cell, written once by
---  ravenchart as a starting point: it is yours.
+--  ravenchart as a starting point. The file is yours to change.
 
 package body Gripper_Cell.Finger
 with SPARK_Mode

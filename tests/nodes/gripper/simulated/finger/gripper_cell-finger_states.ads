@@ -2,14 +2,14 @@
 --  SPDX-License-Identifier: Apache-2.0
 
 --  A simulated device of the model of Gripper_Cell, written once by
---  ravenchart as a starting point: it is yours.
+--  ravenchart as a starting point. The file is yours to change.
 
 package Gripper_Cell.Finger_States
 with SPARK_Mode
 is
    type Call_Count is mod 2 ** 32;
 
-   --  Arguments as they were given last, and replies as they will be given.
+   --  The arguments of the last calls, and the replies of the next ones.
    type State is record
       Calls           : Call_Count := 0;
       Get_Width_Reply : Gripper_Cell.Width_X2 :=

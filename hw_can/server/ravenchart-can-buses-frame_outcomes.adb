@@ -4,7 +4,7 @@
 with Ravenchart.Can.Arbitration;
 with Ravenchart.Can.Levels;
 
-package body Ravenchart.Can.Buses.Rulings
+package body Ravenchart.Can.Buses.Frame_Outcomes
   with SPARK_Mode
 is
    use type Arbitration.Contender;
@@ -14,15 +14,16 @@ is
    use type Levels.Level;
 
    End_Bits : constant := 7;
-   --  Of the end of frame.
+   --  The bits of the end of frame.
 
    Intermission_Bits : constant := 3;
 
    Flag_Bits : constant := Error_Frames.Flag_Bits;
-   --  Of an overload flag as of an error flag.
+   --  The bits of an overload flag, as of an error flag.
 
    Overload_Bits : constant := Flag_Bits + 1 + Error_Frames.Delimiter_Bits;
-   --  An overload frame: those who only react to it begin one bit later.
+   --  The bits of an overload frame: nodes that react to it begin one bit
+   --  later.
 
    function Place_Of
      (F : Bus_Faults.Fault; I : Wire.Image) return Wire.Bit_Count
@@ -34,17 +35,17 @@ is
        then Wire.Length (I)
        else I.Ends (Wire.Acknowledgement_Delimiter) + F.Position)
    with Global => null;
-   --  The bit of the frame, intermission included, that is disturbed.
+   --  The disturbed bit of the frame, intermission included.
 
    function Has_Role
      (Roles : Role_List; Node : Bus_Faults.Victim; R : Role) return Boolean
    is (Node in 1 .. 16 and then Roles (Node_Index (Node)) = R)
    with Global => null;
-   --  Is the node that is hit this in the frame?
+   --  Has the node of a fault this role in the frame?
 
    function First_Difference (A, B : Wire.Image) return Wire.Bit_Index
    with Global => null;
-   --  The first bit in which they differ; the last of all if none does.
+   --  The first bit in which they differ; the last of all if none differs.
 
    ----------------------
    -- First_Difference --
@@ -60,11 +61,11 @@ is
       return Wire.Longest;
    end First_Difference;
 
-   ------------
-   -- Settle --
-   ------------
+   ---------------
+   -- Arbitrate --
+   ---------------
 
-   procedure Settle
+   procedure Arbitrate
      (B      : Bus;
       S      : Segment;
       Now     : Nanoseconds;
@@ -160,7 +161,7 @@ is
               (if P >= First then Roles (Winner) = Sender);
          end loop;
       end;
-   end Settle;
+   end Arbitrate;
 
    ----------
    -- Find --
@@ -173,24 +174,27 @@ is
       Winner  : Node_Index;
       Fault   : Bus_Faults.Fault;
       Image   : Wire.Image;
-      Found   : out Trouble)
+      Found   : out Disturbance)
    is
       Last : constant Wire.Bit_Count := Image.Ends (Wire.End_Of_Frame);
       Slot : constant Wire.Bit_Count :=
         Image.Ends (Wire.Acknowledgement_Slot);
       Place : constant Wire.Bit_Count := Place_Of (Fault, Image);
 
-      procedure Consider (Kind : Trouble_Kind; Position : Wire.Bit_Count)
+      procedure Consider
+        (Kind : Disturbance_Kind; Position : Wire.Bit_Count)
       with
         Global => (In_Out => Found),
-        Pre    => Kind /= Untroubled,
+        Pre    => Kind /= Undisturbed,
         Post   =>
-          Found.Kind /= Untroubled and then Found.Deaf = Found.Deaf'Old;
-      --  The earlier trouble is the one that happens.
+          Found.Kind /= Undisturbed
+          and then Found.Missed_By = Found.Missed_By'Old;
+      --  Keep the earlier one of two disturbances.
 
-      procedure Consider (Kind : Trouble_Kind; Position : Wire.Bit_Count) is
+      procedure Consider
+        (Kind : Disturbance_Kind; Position : Wire.Bit_Count) is
       begin
-         if Found.Kind = Untroubled or else Position < Found.Position then
+         if Found.Kind = Undisturbed or else Position < Found.Position then
             Found.Kind     := Kind;
             Found.Position := Position;
          end if;
@@ -207,13 +211,13 @@ is
          if Fault.Node = Bus_Faults.Everyone
            or else Has_Role (Roles, Fault.Node, Sender)
          then
-            Consider (Seen, Place);
+            Consider (Disturbed_Bit, Place);
          elsif Has_Role (Roles, Fault.Node, Listener) and then Place < Last
          then
             if Is_Passive (B.Nodes (Node_Index (Fault.Node))) then
-               Found.Deaf := Fault.Node;
+               Found.Missed_By := Fault.Node;
             else
-               Consider (Seen, Place);
+               Consider (Disturbed_Bit, Place);
             end if;
          end if;
       end if;
@@ -223,19 +227,19 @@ is
            and then Offers (N).Frame /= Offers (Winner).Frame
          then
             Consider
-              (Collided,
+              (Collision,
                Bus_Frames.Least
                  (First_Difference
                     (Image, Bus_Frames.Image_Of (Offers (N).Frame)),
                   Last));
          end if;
          pragma Loop_Invariant
-           (if Found.Kind = Untroubled
+           (if Found.Kind = Undisturbed
             then
               (for all M in 1 .. N =>
                  (if Roles (M) = Sender
                   then Offers (M).Frame = Offers (Winner).Frame)));
-         pragma Loop_Invariant (Found.Deaf = Found.Deaf'Loop_Entry);
+         pragma Loop_Invariant (Found.Missed_By = Found.Missed_By'Loop_Entry);
       end loop;
 
       for N in Node_Index loop
@@ -243,7 +247,7 @@ is
            or else
              (Roles (N) = Listener
               and then
-                (Natural (N) /= Found.Deaf or else Place > Slot));
+                (Natural (N) /= Found.Missed_By or else Place > Slot));
          Active := Active
            or else
              (Roles (N) /= Outside and then not Is_Passive (B.Nodes (N)));
@@ -251,27 +255,28 @@ is
       if not Answered
         or else Fault.Kind = Bus_Faults.Lost_Acknowledgement
       then
-         Consider (Unacknowledged, Slot);
+         Consider (Acknowledgement_Error, Slot);
       end if;
 
       Hidden := Has_Role (Roles, Fault.Node, Sender)
         and then Is_Passive (B.Nodes (Node_Index (Fault.Node)))
         and then Found.Position >= Image.Ends (Wire.Check_Field);
       case Found.Kind is
-         when Untroubled     =>
+         when Undisturbed           =>
             null;
-         when Seen           =>
+         when Disturbed_Bit         =>
             Found.Accepted := Hidden
               or else Found.Position >= Last
               or else
                 (Found.Position = Last - 1
                  and then Fault.Node /= Bus_Faults.Everyone);
-            Found.Silent := Hidden or else not (Active or Found.Accepted);
-         when Collided       =>
-            Found.Silent := not Active;
-         when Unacknowledged =>
-            Found.Silent   := Is_Passive (B.Nodes (Winner));
-            Found.Accepted := Found.Silent;
+            Found.Recessive_Flag :=
+              Hidden or else not (Active or Found.Accepted);
+         when Collision             =>
+            Found.Recessive_Flag := not Active;
+         when Acknowledgement_Error =>
+            Found.Recessive_Flag := Is_Passive (B.Nodes (Winner));
+            Found.Accepted       := Found.Recessive_Flag;
       end case;
    end Find;
 
@@ -282,30 +287,30 @@ is
    function Error_Of
      (Roles : Role_List;
       Fault : Bus_Faults.Fault;
-      Found : Trouble;
+      Found : Disturbance;
       Image : Wire.Image) return Error_Frames.Error_Frame
    is (Kind =>
-         (if Found.Kind = Unacknowledged
+         (if Found.Kind = Acknowledgement_Error
           then Error_Frames.Acknowledgement_Error
           else Error_Frames.Bit_Error),
        Role => Error_Frames.Transmitter,
        Flag =>
-         (if Found.Silent
+         (if Found.Recessive_Flag
           then Error_Frames.Passive_Flag
           else Error_Frames.Active_Flag),
        Echo =>
          (case Found.Kind is
-            when Untroubled     => 0,
-            when Seen           =>
+            when Undisturbed           => 0,
+            when Disturbed_Bit         =>
               (if Fault.Node = Bus_Faults.Everyone
-                 or else (Found.Accepted and then Found.Silent)
+                 or else (Found.Accepted and then Found.Recessive_Flag)
                then 0
                elsif Found.Position >= Image.Ends (Wire.Acknowledgement_Slot)
                then 1
                else 6),
-            when Collided       => 6,
-            when Unacknowledged =>
-              (if Found.Silent or else not Anyone (Roles, Listener)
+            when Collision             => 6,
+            when Acknowledgement_Error =>
+              (if Found.Recessive_Flag or else not Anyone (Roles, Listener)
                then 0 else 1)));
 
    ------------
@@ -358,12 +363,12 @@ is
                      others   => False);
                when 2      =>
                   return
-                    (Overload => 1,
-                     Bits     =>
+                    (Overload    => 1,
+                     Bits        =>
                        2 + Flag_Bits + (if Alone then Flag_Bits else 0)
                        + Pause,
-                     Called   => False,
-                     Misled   => Alone);
+                     Called      => False,
+                     False_Start => Alone);
                when others =>
                   return
                     (Bits   => (if Alone then Intermission_Bits else 2),
@@ -375,11 +380,11 @@ is
       end case;
    end Behind;
 
-   -------------
-   -- Mislead --
-   -------------
+   -----------------------
+   -- Count_Stuff_Error --
+   -----------------------
 
-   procedure Mislead
+   procedure Count_Stuff_Error
      (Nodes : in out Node_List; Roles : Role_List; But : Natural) is
    begin
       for N in Node_Index loop
@@ -396,17 +401,17 @@ is
                 (if Roles (M) = Outside or else M > N
                  then Nodes (M) = Nodes'Loop_Entry (M)));
       end loop;
-   end Mislead;
+   end Count_Stuff_Error;
 
-   -----------
-   -- Judge --
-   -----------
+   -------------------
+   -- Count_Outcome --
+   -------------------
 
-   procedure Judge
+   procedure Count_Outcome
      (Nodes : in out Node_List;
       Roles : Role_List;
       Fault : Bus_Faults.Fault;
-      Found : Trouble;
+      Found : Disturbance;
       Sent  : out Node_Set;
       Heard : out Node_Set) is
    begin
@@ -414,18 +419,20 @@ is
       Heard := (others => False);
       for N in Node_Index loop
          if Roles (N) = Sender then
-            Sent (N) := Found.Kind = Untroubled;
+            Sent (N) := Found.Kind = Undisturbed;
             Count
               (Nodes (N),
                (case Found.Kind is
-                  when Untroubled      => Fault_Confinement.Transmitted,
-                  when Seen | Collided =>
+                  when Undisturbed               =>
+                    Fault_Confinement.Transmitted,
+                  when Disturbed_Bit | Collision =>
                     Fault_Confinement.Transmitter_Error,
-                  when Unacknowledged  => Fault_Confinement.Unanswered));
+                  when Acknowledgement_Error     =>
+                    Fault_Confinement.Unanswered));
          elsif Roles (N) = Listener then
-            if Natural (N) /= Found.Deaf
+            if Natural (N) /= Found.Missed_By
               and then
-                (Found.Kind = Untroubled
+                (Found.Kind = Undisturbed
                  or else
                    (Found.Accepted
                     and then
@@ -435,7 +442,7 @@ is
                Count (Nodes (N), Fault_Confinement.Received);
             else
                Count (Nodes (N), Fault_Confinement.Receiver_Error);
-               if Found.Kind = Seen
+               if Found.Kind = Disturbed_Bit
                  and then Bus_Faults.Is_Witness (Fault, Positive (N))
                then
                   Count
@@ -455,17 +462,17 @@ is
               Sent (M) =
                 (M <= N
                  and then Roles (M) = Sender
-                 and then Found.Kind = Untroubled));
+                 and then Found.Kind = Undisturbed));
          pragma Loop_Invariant
            (for all M in Node_Index =>
               (if Heard (M) then Roles (M) = Listener)
               and then
-                (if Found.Kind = Untroubled
+                (if Found.Kind = Undisturbed
                    and then M <= N
                    and then Roles (M) = Listener
-                   and then Natural (M) /= Found.Deaf
+                   and then Natural (M) /= Found.Missed_By
                  then Heard (M)));
       end loop;
-   end Judge;
+   end Count_Outcome;
 
-end Ravenchart.Can.Buses.Rulings;
+end Ravenchart.Can.Buses.Frame_Outcomes;

@@ -3,7 +3,7 @@
 
 --  Position from velocity, where there is no encoder.
 
-package body Surgical_Robot.Servo.Follow_Stand_In
+package body Surgical_Robot.Servo.Follow_Fallback
 with SPARK_Mode
 is
    use type Ravenchart.Number;
@@ -13,8 +13,8 @@ is
 
    procedure Go_On (Place : in out Angle; Rest : in out Speed; By : Speed)
    with Global => null;
-   --  Where a joint is after one more execution, in whole mrad; Rest is what
-   --  it has moved beyond that, in parts of which Per_Second are a mrad.
+   --  The position of a joint after one more execution, in whole mrad. Rest is
+   --  the movement beyond that, in units of a mrad divided by Per_Second.
 
    procedure Go_On (Place : in out Angle; Rest : in out Speed; By : Speed) is
       Moved : constant Ravenchart.Number :=
@@ -39,4 +39,4 @@ is
       Go_On (Followed.Axis_3, Rest.Axis_3, Get_Velocity.Axis_3);
       Go_On (Followed.Axis_4, Rest.Axis_4, Get_Velocity.Axis_4);
    end Follow;
-end Surgical_Robot.Servo.Follow_Stand_In;
+end Surgical_Robot.Servo.Follow_Fallback;

@@ -34,21 +34,20 @@ from ravenchart.gen.emit.ada.expressions import (
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import ada_case, states_package, where
 from ravenchart.gen.emit.ada.statements import Comment
-from ravenchart.gen.model.chart.tree import Place
-from ravenchart.gen.model.statechart import Lane, PseudoKind, Region
+from ravenchart.gen.model.statechart import TOP, PseudoKind, Region, RegionId
 from ravenchart.gen.origins import Origin
 
 from .compound import Enter, EntryStep, compounds_of
 from .own_names import state_literal
 
 
-class Places:
+class Configurations:
     """The configurations of one chart, as they are held and tested."""
 
     def __init__(self, region: Region) -> None:
         self.compounds = compounds_of(region)
         self.region = self.compounds.region  # triggers are compared by identity
-        self.lanes = region.lanes()
+        self.concurrent = region.concurrent_regions()
 
     @property
     def states(self) -> str:
@@ -58,56 +57,57 @@ class Places:
     @property
     def single(self) -> bool:
         """No orthogonal regions: a leaf is the whole configuration."""
-        return len(self.lanes) == 1
+        return len(self.concurrent) == 1
 
     @property
-    def place_type(self) -> DottedName:
+    def configuration_type(self) -> DottedName:
         """The type of a configuration, from inside the component's packages."""
         return ref(self.states, "Leaf" if self.single else "Configuration")
 
     @property
-    def place(self) -> str:
+    def configuration_name(self) -> str:
         """The parameter and component that hold a configuration."""
         return "Leaf" if self.single else "Configuration"
 
     def is_end(self, vertex: str) -> bool:
-        """Is it a terminate? Then it is where the whole region is, in whatever state it stands."""
+        """Whether it is a terminate, which ends the whole chart in whatever state it stands."""
         pseudo = self.region.pseudostate(vertex)
         return pseudo is not None and pseudo.kind is PseudoKind.TERMINATE
 
-    def lane(self, vertex: str) -> Lane:
+    def concurrent_region(self, vertex: str) -> RegionId:
         """The top-level or orthogonal region among whose leaves a vertex is."""
-        return self.lanes[-1] if self.is_end(vertex) else self.region.lane(vertex)
+        return TOP if self.is_end(vertex) else self.region.concurrent_region(vertex)
 
     def ancestors(self, leaf: str) -> tuple[str, ...]:
         """A leaf and the states that are active around it, innermost first."""
         return (leaf,) if self.is_end(leaf) else self.region.ancestors(leaf)
 
-    def lane_type(self, lane: Lane) -> str:
+    def leaves_type(self, region: RegionId) -> str:
         """The enumeration of a region's leaves, as its package names it."""
-        return "Leaf" if lane.owner is None else f"{ada_case(lane.name)}_Leaf"
+        return "Leaf" if region.owner is None else f"{ada_case(region.name)}_Leaf"
 
-    def lane_field(self, lane: Lane) -> str:
+    def leaf_field(self, region: RegionId) -> str:
         """Its component of a configuration."""
-        return "Top" if lane.owner is None else f"In_{ada_case(lane.name)}"
+        return "Top" if region.owner is None else f"In_{ada_case(region.name)}"
 
-    def at(self, holder: Named, lane: Lane) -> DottedName:
+    def at(self, holder: Named, region: RegionId) -> DottedName:
         """The leaf of a region in the configuration that ``holder`` names."""
-        return ref(holder) if self.single else ref(holder, self.lane_field(lane))
+        return ref(holder) if self.single else ref(holder, self.leaf_field(region))
 
-    def literals(self, lane: Lane) -> tuple[str, ...]:
-        """The leaves of a region in tree order, passed pseudostates behind their siblings."""
-        own = Place(None, "") if lane.owner is None else Place(lane.owner, lane.name)
-        return tuple(self.literals_in(own))
+    def literals(self, region: RegionId) -> tuple[str, ...]:
+        """The leaves of any region in tree order, passed pseudostates behind their siblings.
 
-    def literals_in(self, place: Place) -> Iterator[str]:
-        """The leaves inside a region, without those of orthogonal states inside."""
-        for state in self.region.children(place.owner, place.region):
+        The regions of an orthogonal state inside have their own.
+        """
+        return tuple(self._literals(region))
+
+    def _literals(self, region: RegionId) -> Iterator[str]:
+        for state in self.region.children(*region):
             if len(state.regions) == 1:
-                yield from self.literals_in(Place(state.name, state.regions[0].name))
+                yield from self._literals(state.region_ids[0])
             else:
                 yield state.name
-        yield from self.compounds.passed(place)
+        yield from self.compounds.passed(region)
 
     def is_literal(self, vertex: str) -> bool:
         """Is it a leaf of its region, rather than a range of leaves?"""
@@ -123,26 +123,26 @@ class Places:
 
     def in_state(self, holder: Named, vertex: str, component: str | None = None) -> Expr:
         """Is the configuration that ``holder`` names in a state, or inside it?"""
-        lane = self.lane(vertex)
-        leaf, name = self.at(holder, lane), self.literal(vertex, component)
+        region = self.concurrent_region(vertex)
+        leaf, name = self.at(holder, region), self.literal(vertex, component)
         here = equal(leaf, name) if self.is_literal(vertex) else member(leaf, name)
-        if lane.owner is None:
+        if region.owner is None:
             return here
-        return both(*conjuncts([self.in_state(holder, lane.owner, component), here]))
+        return both(*conjuncts([self.in_state(holder, region.owner, component), here]))
 
-    def traced(self, lane: Lane) -> str:
+    def traced(self, region: RegionId) -> str:
         """The name of a top-level or orthogonal region in traces."""
-        return self.region.name if lane.owner is None else f"{self.region.name}.{lane.name}"
+        return self.region.name if region.owner is None else f"{self.region.name}.{region.name}"
 
     def compared_types(self, state: str) -> tuple[str, ...]:
         """The types whose equality the test for a state uses, without their package."""
         found: list[str] = []
         at: str | None = state
         while at is not None:
-            lane = self.region.lane(at)
+            region = self.region.concurrent_region(at)
             if self.is_literal(at):
-                found.append(self.lane_type(lane))
-            at = lane.owner
+                found.append(self.leaves_type(region))
+            at = region.owner
         return tuple(found)
 
     def package_of_states(self, model: Origin) -> Package:
@@ -151,14 +151,14 @@ class Places:
         Each state has its location in the model, as seen from ``model``.
         """
         items: list[Decl] = []
-        for lane in reversed(self.lanes):
-            leaves = list(self.literals(lane))
+        for region in reversed(self.concurrent):
+            leaves = self.literals(region)
             names = tuple(map(state_literal, leaves))
             notes = tuple(self._where(name, model) for name in leaves)
-            items.append(EnumType(self.lane_type(lane), names, notes))
+            items.append(EnumType(self.leaves_type(region), names, notes))
         for state in self.region.states:
             if len(state.regions) == 1:
-                leaves = list(self.literals_in(Place(state.name, state.regions[0].name)))
+                leaves = self.literals(state.region_ids[0])
                 bounds = Range(ref(state_literal(leaves[0])), ref(state_literal(leaves[-1])))
                 base = RangeConstrained(self.parent_type(state.name), bounds)
                 items.append(self._where(state.name, model))
@@ -166,9 +166,11 @@ class Places:
         if not self.single:
             rows = tuple(
                 RecordComponent(
-                    self.lane_field(n), self.lane_type(n), ref(state_literal(self.default_leaf(n)))
+                    self.leaf_field(region),
+                    self.leaves_type(region),
+                    ref(state_literal(self.region.default_of(region))),
                 )
-                for n in reversed(self.lanes)
+                for region in reversed(self.concurrent)
             )
             items.append(RecordDeclaration("Configuration", rows))
         return Package(self.states, tuple(items))
@@ -180,39 +182,36 @@ class Places:
 
     def parent_type(self, state: str) -> str:
         """The type that a composite's leaves are a range of."""
-        lane = self.region.lane(state)
+        region = self.region.concurrent_region(state)
         parent = self.region.state(state).parent
-        if parent is None or parent == lane.owner:
-            return self.lane_type(lane)
+        if parent is None or parent == region.owner:
+            return self.leaves_type(region)
         return state_literal(parent)
 
-    def default_leaf(self, lane: Lane) -> str:
-        """The leaf that a top-level or orthogonal region starts with by default."""
-        return self.region.default_of(lane.owner, lane.name if lane.owner else "")
+    def orthogonal_regions(self, state: str) -> tuple[RegionId, ...]:
+        """The regions of an orthogonal state; none of any other."""
+        return tuple(region for region in self.concurrent if region.owner == state)
 
-    def lanes_of(self, state: str) -> tuple[Lane, ...]:
-        """The regions of an orthogonal state."""
-        return tuple(n for n in self.lanes if n.owner == state)
-
-    def after(self, entries: tuple[EntryStep, ...]) -> dict[Lane, str]:
+    def after(self, entries: tuple[EntryStep, ...]) -> dict[RegionId, str]:
         """The leaves that entries lead to, by region; other regions keep theirs."""
-        found: dict[Lane, str] = {}
+        found: dict[RegionId, str] = {}
         for step in entries:
             if isinstance(step, Enter) and self.is_literal(step.vertex):
-                found[self.region.lane(step.vertex)] = step.vertex
-                found |= {n: self.default_leaf(n) for n in self.lanes_of(step.vertex)}
+                found[self.region.concurrent_region(step.vertex)] = step.vertex
+                inside = self.orthogonal_regions(step.vertex)
+                found |= {region: self.region.default_of(region) for region in inside}
         return found
 
     def configuration(
-        self, leaves: dict[Lane, str], kept: Named | None, component: str | None = None
+        self, leaves: dict[RegionId, str], kept: Named | None, component: str | None = None
     ) -> Expr:
         """A configuration with these leaves; those of other regions come from ``kept``."""
         rows = tuple(
-            Arg(self.lane_field(lane), self.literal(leaves[lane], component))
-            for lane in reversed(self.lanes)
-            if lane in leaves
+            Arg(self.leaf_field(region), self.literal(leaves[region], component))
+            for region in reversed(self.concurrent)
+            if region in leaves
         )
-        base = None if kept is None or len(rows) == len(self.lanes) else ref(kept)
+        base = None if kept is None or len(rows) == len(self.concurrent) else ref(kept)
         if not rows:
             assert base is not None
             return base
@@ -220,7 +219,8 @@ class Places:
 
     def initial(self, component: str | None = None) -> Expr:
         """The configuration before the region has started, seen from inside ``component``."""
-        return self.configuration({n: self.default_leaf(n) for n in self.lanes}, None, component)
+        leaves = {region: self.region.default_of(region) for region in self.concurrent}
+        return self.configuration(leaves, None, component)
 
 
 def conjuncts(parts: list[Expr]) -> list[Expr]:

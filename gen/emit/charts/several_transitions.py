@@ -58,7 +58,7 @@ from ravenchart.gen.emit.ada.statements import (
     do,
 )
 from ravenchart.gen.emit.language.compound import Firing, FiringKind
-from ravenchart.gen.model.statechart import Lane
+from ravenchart.gen.model.statechart import TOP, RegionId
 
 from .firing import Moves
 from .selection import segment, whole
@@ -96,7 +96,7 @@ def firing_list(shape: RegionShape) -> list[Decl]:
     ]
 
 
-def declared_lanes(shape: RegionShape) -> list[Decl]:
+def declared_choice(shape: RegionShape) -> list[Decl]:
     """Choose, and the transitions of a choice that a step may take."""
     if shape.single:
         return []
@@ -107,7 +107,7 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
     ghost = (Aspect("Ghost"),)
     return [
         Subprogram("Choose", params, "Choice", aspects=(Aspect("Post", chosen),)),
-        Comment("The transitions that one occurrence asks for."),
+        Comment("The transitions selected for one occurrence."),
         Subprogram(
             _IS_OF,
             (fired, choice, Param("Last", "in", "Selection")),
@@ -115,25 +115,25 @@ def declared_lanes(shape: RegionShape) -> list[Decl]:
             aspects=ghost,
             expression=both(call("Firings.Is_Ordered", _FIRED), _of_choice(shape)),
         ),
-        Comment("Is what has fired chosen, in the order of the lanes, and none of it after Last?"),
+        Comment(_ONLY_CHOSEN.format(", besides segments" if shape.passes else "")),
         Subprogram(
             "Follows", (fired, choice), "Boolean", aspects=ghost, expression=_follows(shape)
         ),
-        Comment(_FOLLOWS + (_DROPPED if shape.watched and not shape.passes else _OVERTAKEN)),
+        Comment(_told(shape)),
     ]
 
 
 def _of_choice(shape: RegionShape) -> Expr:
     """Each is selected for a region, or goes on from a choice or history."""
-    chosen = (ref("C", shape.lane_name(n)) for n in shape.busy_lanes)
+    chosen = (ref("C", shape.label(n)) for n in shape.busy_regions)
     due: Expr = both(OperatorChain("<=", (_ITEM, ref("Last"))), member(_ITEM, *chosen))
     if shape.passes:
         due = OperatorChain("or else", (call("Is_Segment", _ITEM), due))
     return ForAll("I", up_to(_COUNT), due)
 
 
-def _is_of(shape: RegionShape, lane: Lane) -> Expr:
-    last = Attribute(shape.transitions_of(lane), "Last")
+def _is_of(shape: RegionShape, region: RegionId) -> Expr:
+    last = Attribute(shape.transitions_of(region), "Last")
     return call(_IS_OF, _FIRED, ref("C"), last)
 
 
@@ -147,13 +147,30 @@ _IS_OF = "Is_Of_Choice"
 _FIRED = ref("Fired")
 _COUNT = ref("Fired.Count")
 _ITEM = Indexed("Fired.Items", ref("I"))
-_SEGMENTS = "Does it go on from a choice or history?"
-_NO_SEGMENTS = "None does: the chart has neither choices nor histories."
-_FOLLOWS = (
-    "A deferral is fired alone. Otherwise what is chosen is fired, lane by lane, and nothing else; "
+_SEGMENTS = "Whether T leaves a choice or history."
+_NO_SEGMENTS = "True for None only: the chart has neither choices nor histories."
+_ONLY_CHOSEN = (
+    "Whether Fired holds only transitions of C, none after Last, in the order of the regions{}."
 )
-_OVERTAKEN = "a lane inside a state that transitions leave may be overtaken by an earlier one."
-_DROPPED = "of two that conflict, as one leaves a state in which the other fires, the earlier one."
+_FOLLOWS = "Whether Fired holds the transitions of C{}, in the order of the regions, and no others."
+_ALONE = " A deferral is taken alone."
+_DROPPED = (
+    " Of two transitions that conflict only the earlier one is taken. Two conflict where one "
+    "leaves a state that holds the region of the other."
+)
+_FIRST_ONLY = (
+    " Only the first transition of C is taken for certain: the segments behind it can change the "
+    "configuration before the others."
+)
+
+
+def _told(shape: RegionShape) -> str:
+    """The comment on `Follows`."""
+    found = _FOLLOWS.format(", with segments" if shape.passes else "")
+    found += _ALONE if _deferring(shape) else ""
+    if shape.passes:
+        return found + _FIRST_ONLY
+    return found + (_DROPPED if shape.watched else "")
 
 
 def is_only(chosen: Expr) -> Expr:
@@ -166,83 +183,83 @@ def is_segment(shape: RegionShape, firing: Firing) -> bool:
     return shape.region.pseudostate(firing.sources[0]) is not None
 
 
-def _choice(shape: RegionShape, lane: Lane) -> Expr:
-    return ref("C", shape.lane_name(lane))
+def _choice(shape: RegionShape, region: RegionId) -> Expr:
+    return ref("C", shape.label(region))
 
 
 def _follows(shape: RegionShape) -> Expr:
-    facts = both(_is_of(shape, shape.busy_lanes[-1]), *_asked(shape, shape.busy_lanes))
-    deferrals = tuple((call("Is_Deferral", lane), is_only(lane)) for lane in _deferring(shape))
+    facts = both(_is_of(shape, shape.busy_regions[-1]), *_asked(shape, shape.busy_regions))
+    deferrals = tuple((call("Is_Deferral", one), is_only(one)) for one in _deferring(shape))
     return IfExpr(deferrals, facts) if deferrals else facts
 
 
 def _deferring(shape: RegionShape) -> list[Expr]:
     """The selections for the regions that have deferrals."""
-    lanes = {f.lane for f in shape.firings if f.kind is FiringKind.DEFERRAL}
-    return [_choice(shape, n) for n in shape.busy_lanes if n in lanes]
+    regions = {f.region for f in shape.firings if f.kind is FiringKind.DEFERRAL}
+    return [_choice(shape, n) for n in shape.busy_regions if n in regions]
 
 
-def _asked(shape: RegionShape, lanes: Sequence[Lane]) -> list[Expr]:
+def _asked(shape: RegionShape, regions: Sequence[RegionId]) -> list[Expr]:
     """That each transition selected for these regions is taken, unless it conflicts with an
     earlier one. Where ways go on from choices and histories, only the first selected one is."""
     if not shape.passes:
-        return [fact for n in lanes for fact in (_has(shape, n), *_apart(shape, n))]
+        return [fact for n in regions for fact in (_has(shape, n), *_apart(shape, n))]
     rows = (
-        (OperatorChain("/=", (_choice(shape, n), ref("None"))), _fired(shape, n)) for n in lanes
+        (OperatorChain("/=", (_choice(shape, n), ref("None"))), _fired(shape, n)) for n in regions
     )
     return [IfExpr(tuple(rows), None)]
 
 
-def _has(shape: RegionShape, lane: Lane) -> Expr:
+def _has(shape: RegionShape, region: RegionId) -> Expr:
     """That the transition selected for a region is taken, unless one in conflict with it was."""
-    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None")))]
-    before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
-    asked += [Prefix("not", clash) for clash in _clashes(shape, lane, before)]
-    return IfExpr(((both(*asked), _fired(shape, lane)),), None)
+    asked: list[Expr] = [OperatorChain("/=", (_choice(shape, region), ref("None")))]
+    before = shape.busy_regions[: shape.busy_regions.index(region)]
+    asked += [Prefix("not", clash) for clash in _clashes(shape, region, before)]
+    return IfExpr(((both(*asked), _fired(shape, region)),), None)
 
 
-def _fired(shape: RegionShape, lane: Lane) -> Expr:
-    return call("Firings.Has", _FIRED, _choice(shape, lane))
+def _fired(shape: RegionShape, region: RegionId) -> Expr:
+    return call("Firings.Has", _FIRED, _choice(shape, region))
 
 
-def _clashes(shape: RegionShape, lane: Lane, others: Sequence[Lane]) -> Iterator[Expr]:
+def _clashes(shape: RegionShape, region: RegionId, others: Sequence[RegionId]) -> Iterator[Expr]:
     """For each of the others: it was taken, and one of both leaves a state around the other."""
     for other in others:
         leaving = [
             call(f"Leaves_{ada_case(state)}", _choice(shape, one))
             for state in shape.watched
-            if {lane, other} <= set(shape.lanes_in(state))
-            for one in (other, lane)
+            if {region, other} <= set(shape.busy_inside(state))
+            for one in (other, region)
         ]
         if leaving:
             yield both(_fired(shape, other), chain("or else", leaving))
 
 
-def _apart(shape: RegionShape, lane: Lane) -> Iterator[Expr]:
+def _apart(shape: RegionShape, region: RegionId) -> Iterator[Expr]:
     """That the transition taken for a region conflicts with none taken for an earlier one."""
-    before = shape.busy_lanes[: shape.busy_lanes.index(lane)]
-    for clash in _clashes(shape, lane, before):
-        yield Prefix("not", both(_fired(shape, lane), clash))
+    before = shape.busy_regions[: shape.busy_regions.index(region)]
+    for clash in _clashes(shape, region, before):
+        yield Prefix("not", both(_fired(shape, region), clash))
 
 
-def _unmoved(shape: RegionShape, done: Sequence[Lane]) -> Iterator[Expr]:
+def _unmoved(shape: RegionShape, done: Sequence[RegionId]) -> Iterator[Expr]:
     """That a region still to come is as it was, if it has a selection and no state around it was
     left. Of a region with one leaf the compiler knows that."""
-    for lane in () if shape.passes else shape.busy_lanes[len(done) :]:
-        around = [ada_case(s) for s in shape.watched if lane in shape.lanes_in(s)]
-        moving = [n for n in shape.lanes_around(lane) if len(shape.literals(n)) > 1]
+    for region in () if shape.passes else shape.busy_regions[len(done) :]:
+        around = [ada_case(s) for s in shape.watched if region in shape.busy_inside(s)]
+        moving = [n for n in shape.enclosing(region) if len(shape.literals(n)) > 1]
         if around and moving:
             stays = [Prefix("not", call(f"Has_Left_{s}", _FIRED)) for s in around]
-            asked: list[Expr] = [OperatorChain("/=", (_choice(shape, lane), ref("None"))), *stays]
+            some = OperatorChain("/=", (_choice(shape, region), ref("None")))
             same = [equal(shape.at(shape.held, n), shape.at(BEFORE, n)) for n in moving]
-            yield IfExpr(((both(*asked), both(*same)),), None)
+            yield IfExpr(((both(some, *stays), both(*same)),), None)
 
 
-def _overtaken(shape: RegionShape, lane: Lane) -> bool:
+def _overtaken(shape: RegionShape, region: RegionId) -> bool:
     """Can the transitions of earlier regions disable that selected for this one?
 
     Where they go on from choices and histories this is tested rather than proved."""
-    return shape.passes or any(lane in shape.lanes_in(s) for s in shape.watched)
+    return shape.passes or any(region in shape.busy_inside(s) for s in shape.watched)
 
 
 def followed(shape: RegionShape) -> Expr:
@@ -261,11 +278,11 @@ def followed(shape: RegionShape) -> Expr:
 # --- The step ----------------------------------------------------------------
 
 
-def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
+def concurrent_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """Every region's transition in order; one that conflicts with an earlier one is dropped."""
     work: tuple[Stmt, ...] = (
         *moves.safety.alone(),
-        *(s for lane in shape.busy_lanes for s in (_lane(shape, lane), *_so_far(shape, lane))),
+        *(s for one in shape.busy_regions for s in (_take(shape, one), *_so_far(shape, one))),
     )
     if deferred := _deferring(shape):
         rows = [(call("Is_Deferral", one), (do("Fire_Whole", one),)) for one in deferred]
@@ -274,13 +291,15 @@ def lane_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> S
     declared: list[Decl] = [Object("C", "Choice")]
     if shape.watched and not shape.passes:
         held, ghost = shape.held, (Aspect("Ghost"),)
-        declared.append(Object(BEFORE, shape.place_type, held, constant=True, aspects=ghost))
+        declared.append(
+            Object(BEFORE, shape.configuration_type, held, constant=True, aspects=ghost)
+        )
     return _step(shape, moves, profile, declared, (choose, *work))
 
 
 def passing_step(shape: RegionShape, moves: Moves, profile: tuple[Param, ...]) -> Subprogram:
     """One transition, then the segments that its way passes."""
-    pick = Assign("Chosen", whole(shape, shape.lanes[0]))
+    pick = Assign("Chosen", whole(shape, TOP))
     some = OperatorChain("/=", (ref("Chosen"), ref("None")))
     work = (pick, IfStatement(((some, (do("Fire_Whole", ref("Chosen")),)),)))
     return _step(shape, moves, profile, [Object("Chosen", "Selection")], work)
@@ -306,15 +325,15 @@ def _step(
     )
 
 
-def _lane(shape: RegionShape, lane: Lane) -> Stmt:
+def _take(shape: RegionShape, region: RegionId) -> Stmt:
     """Take the transition of a region, unless an earlier one left its state, or it would leave a
     state in which an earlier one was taken. One that was dropped is no obstacle."""
-    chosen = _choice(shape, lane)
+    chosen = _choice(shape, region)
     free: list[Expr] = [OperatorChain("/=", (chosen, ref("None")))]
-    around = [s for s in shape.watched if lane in shape.lanes_in(s)]
+    around = [s for s in shape.watched if region in shape.busy_inside(s)]
     for state in around:
-        inside = shape.lanes_in(state)
-        earlier = inside[: inside.index(lane)]
+        inside = shape.busy_inside(state)
+        earlier = inside[: inside.index(region)]
         if not earlier:
             continue
         name = ada_case(state)
@@ -322,23 +341,23 @@ def _lane(shape: RegionShape, lane: Lane) -> Stmt:
         stays = Prefix("not", call(f"Leaves_{name}", chosen))
         free.append(Prefix("not", call(f"Has_Left_{name}", _FIRED)))
         free.append(OperatorChain("or else", (stays, chain("and then", still))))
-    if lane != shape.busy_lanes[0] and _overtaken(shape, lane):
+    if region != shape.busy_regions[0] and _overtaken(shape, region):
         free.append(call("In_Source", chosen, shape.held))
     return IfStatement(((chain("and then", free), (do("Fire_Whole", chosen),)),))
 
 
-def _so_far(shape: RegionShape, lane: Lane) -> tuple[Pragma, ...]:
+def _so_far(shape: RegionShape, region: RegionId) -> tuple[Pragma, ...]:
     """The transitions taken for the regions up to this one; types bound them when it is the last.
 
     After the last one provers need it only where transitions conflict.
     """
-    done = shape.busy_lanes[: shape.busy_lanes.index(lane) + 1]
-    is_last = lane == shape.busy_lanes[-1]
+    done = shape.busy_regions[: shape.busy_regions.index(region) + 1]
+    is_last = region == shape.busy_regions[-1]
     if is_last and (shape.passes or not shape.watched):
         return ()
     most = number(len(done) * (1 + shape.most_segments))
     few = () if is_last else (OperatorChain("<=", (_COUNT, most)),)
-    facts = (*few, _is_of(shape, lane), *_asked(shape, done), *_unmoved(shape, done))
+    facts = (*few, _is_of(shape, region), *_asked(shape, done), *_unmoved(shape, done))
     return (Pragma("Assert", (both(*facts),)),)
 
 

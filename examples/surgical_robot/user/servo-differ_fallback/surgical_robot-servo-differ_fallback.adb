@@ -3,7 +3,7 @@
 
 --  Velocity from position, where there is no tachometer.
 
-package body Surgical_Robot.Servo.Differ_Stand_In
+package body Surgical_Robot.Servo.Differ_Fallback
 with SPARK_Mode
 is
    use type Ravenchart.Number;
@@ -20,14 +20,14 @@ is
         then Ravenchart.Number (Rate'Result)
           = (Ravenchart.Number (Now) - Ravenchart.Number (Past))
             * Per_Second);
-   --  How fast a joint came from Past to Now, within one execution.
+   --  The speed of a joint that moved from Past to Now in one execution.
 
    subtype Microradians is Ravenchart.Number range -3_000_000 .. 3_000_000;
 
    function Seen (Place : Microradians) return Angle
    is (Angle ((Place - Place mod 1_000) / 1_000))
    with Ghost, Global => null;
-   --  What an encoder tells of where a joint is: whole mrad, rounded down.
+   --  The position that an encoder reads: whole mrad, rounded down.
 
    procedure Lemma_Resolution (Now, Past : Microradians)
    with
@@ -38,8 +38,8 @@ is
        abs (Ravenchart.Number (Rate (Seen (Now), Seen (Past))) * 5
             - (Now - Past)) < 1_000;
    --  In an execution of 5 ms a joint moves by 5 microradians for each mrad/s.
-   --  So what is estimated differs from the mean velocity by less than 200
-   --  mrad/s: one mrad, the resolution of the encoder, in 5 ms.
+   --  So the estimate differs from the mean velocity by less than 200 mrad/s:
+   --  one mrad, the resolution of the encoder, in 5 ms.
 
    function Rate (Now, Past : Angle) return Speed is
       Moved : constant Ravenchart.Number :=
@@ -68,4 +68,4 @@ is
          Axis_4 => Rate (Get_Position.Axis_4, Before.Axis_4));
       Before := Get_Position;
    end Differ;
-end Surgical_Robot.Servo.Differ_Stand_In;
+end Surgical_Robot.Servo.Differ_Fallback;

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
-package body Devices_Feature.Servo.Estimate_Stand_In
+package body Devices_Feature.Servo.Estimate_Fallback
 with SPARK_Mode
 is
    use type Ravenchart.Number;
@@ -35,4 +35,4 @@ is
          Axis_4 => Rate (Get_Position.Axis_4, Last.Axis_4));
       Last := Get_Position;
    end Estimate;
-end Devices_Feature.Servo.Estimate_Stand_In;
+end Devices_Feature.Servo.Estimate_Fallback;
