@@ -345,7 +345,7 @@ _EXECUTED = (Param("Item", "in", "Row"), Param("Used", "in", "Ravenchart.Nanosec
 
 def _budgets(processor: Processor) -> list[Decl]:
     """The enforced limit of each row, and the procedure that compares execution times with it."""
-    rows = tuple(Arg(ref(row_name(slot)), fact(slot.element, "Budget")) for slot in processor.slots)
+    rows = tuple(Arg(ref(row_name(slot)), fact(slot.element, "Wcet")) for slot in processor.slots)
     return [
         Subprogram("On_Executed", _EXECUTED),
         TypeDeclaration("Row_Budgets", ArrayDefinition("Row", "Ravenchart.Nanoseconds")),
