@@ -16,6 +16,9 @@ EXACT_DIGITS = 18
 US, MS = 1_000, 1_000_000
 """Nanoseconds in a microsecond and in a millisecond."""
 
+TENTH = US // 10
+"""Nanoseconds in a tenth of a microsecond."""
+
 _UNITS = ((1_000_000_000, "s"), (1_000_000, "ms"), (1_000, "us"), (1, "ns"))
 
 
@@ -37,14 +40,14 @@ def exact_time(ns: int) -> str:
 
 def microseconds(ns: int) -> str:
     """A duration in us, rounded up to a tenth; whole numbers without the tenth."""
-    tenths = -(-ns // 100)
+    tenths = -(-ns // TENTH)
     sign, tenths = ("-", -tenths) if tenths < 0 else ("", tenths)
     return f"{sign}{tenths // 10}" + (f".{tenths % 10}" if tenths % 10 else "")
 
 
 def milliseconds(ns: int) -> str:
     """The same time as `microseconds` says, in ms: the point is three places further left."""
-    tenths = -(-ns // 100)
+    tenths = -(-ns // TENTH)
     sign, tenths = ("-", -tenths) if tenths < 0 else ("", tenths)
     part = f"{tenths % 10_000:04}".rstrip("0")
     return f"{sign}{tenths // 10_000}" + (f".{part}" if part else "")

@@ -35,6 +35,7 @@ def page(template: str, context: Mapping[str, Any]) -> str:
     )
     environment.filters |= {
         "us": both,
+        "left": left,
         "only_us": units.microseconds,
         "duration": units.duration,
         "percent": rounded.percent,
@@ -46,11 +47,19 @@ def page(template: str, context: Mapping[str, Any]) -> str:
 
 def both(ns: int) -> Markup:
     """A time in us and, from 1 ms on, in ms beside it, with the exact value for sorting."""
-    text = units.microseconds(ns)
+    return _cell(ns, ns)
+
+
+def left(ns: int) -> Markup:
+    """The same of a slack, which is rounded down."""
+    return _cell(ns, ns // units.TENTH * units.TENTH)
+
+
+def _cell(ns: int, shown: int) -> Markup:
     beside = Markup("")
     if abs(ns) >= units.MS:
-        beside = Markup(' <small class="ms">{} ms</small>').format(units.milliseconds(ns))
-    return Markup('<data value="{}">{}</data>{}').format(ns, text, beside)
+        beside = Markup(' <small class="ms">{} ms</small>').format(units.milliseconds(shown))
+    return Markup('<data value="{}">{}</data>{}').format(ns, units.microseconds(shown), beside)
 
 
 def _with_contents(text: str) -> str:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.model import notation
 from ravenchart.gen.model.component import Activity, Component, StateRef
 from ravenchart.gen.model.statechart import (
     Initial,
@@ -23,8 +24,6 @@ from ravenchart.gen.model.statechart import (
     Transition,
     TransitionKind,
 )
-
-from . import words
 
 
 class Shape(Enum):
@@ -151,7 +150,7 @@ def _area(
         for p in region.pseudostates
         if (p.parent, p.region) == (owner, nested)
     ]
-    effect = Label(effect=words.actions(initial.effect))
+    effect = Label(effect=notation.actions(initial.effect))
     return Area(name, initial.target, effect, (*states, *pseudostates))
 
 
@@ -163,12 +162,12 @@ def _state(component: Component, region: Region, state: State) -> DrawnVertex:
 
 def _behaviours(component: Component, region: Region, state: State) -> Iterator[Label]:
     if state.entry:
-        yield Label("entry", effect=words.actions(state.entry))
+        yield Label("entry", effect=notation.actions(state.entry))
     for activity in component.activities:
         if activity.while_in == StateRef(region.name, state.name):
             yield Label("do", effect=(_do(activity),))
     if state.exit:
-        yield Label("exit", effect=words.actions(state.exit))
+        yield Label("exit", effect=notation.actions(state.exit))
     for transition in region.transitions:
         if transition.source == state.name and transition.kind is TransitionKind.INTERNAL:
             yield label(transition)
@@ -184,5 +183,5 @@ def label(transition: Transition) -> Label:
     """The trigger, guard and effect of a transition as text."""
     guard = "else" if transition.otherwise else ""
     if transition.guard is not None:
-        guard = words.shown_expression(transition.guard)
-    return Label(words.trigger(transition.trigger), guard, words.actions(transition.effect))
+        guard = notation.shown_expression(transition.guard)
+    return Label(notation.trigger(transition.trigger), guard, notation.actions(transition.effect))

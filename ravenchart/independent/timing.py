@@ -256,7 +256,9 @@ class Timing:
             self.report.skip("deadlines that are kept by offsets alone")
         else:
             line = self.line(f"{own}_R")
-            text = f"{task.element} can miss its deadline: R = {claimed} > D = {task.deadline}"
+            text = (
+                f"{task.element} can miss its deadline: R = {claimed} ns > D = {task.deadline} ns"
+            )
             path = self.certificate.path
             self.report.agree("responses", path, line, claimed <= task.deadline, text)
 
@@ -368,7 +370,9 @@ class Timing:
             self.terms("arbitration", f"{own}_Needs{tail}", needed)
         response = max(late + w + length - n * message.period for n, w in enumerate(windows))
         self.same("arbitration", f"{own}_R", response, f"the response time of {message.element}")
-        text = f"{message.element} can miss its deadline: R = {claimed} > D = {message.deadline}"
+        text = (
+            f"{message.element} can miss its deadline: R = {claimed} ns > D = {message.deadline} ns"
+        )
         path, line = self.certificate.path, self.line(f"{own}_R")
         self.report.agree("arbitration", path, line, claimed <= message.deadline, text)
 

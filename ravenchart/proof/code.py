@@ -3,18 +3,24 @@
 
 """The code of an Ada source or project, without its comments and its layout.
 
-Lexical elements as in the Ada reference manual, 2.2: an apostrophe behind a name or a closing
-parenthesis belongs to an attribute, any other begins a character literal.
+Lexical elements as in the Ada reference manual, 2.2: an apostrophe behind a name, a string, ``@``
+or a closing bracket belongs to an attribute or a qualified expression. Any other begins a character
+literal, also behind a reserved word other than ``all``.
 """
 
 from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Sequence
+
+from ravenchart.gen.language.names import RESERVED
+
+_RESERVED = frozenset(word.encode() for word in RESERVED - {"all"})
 
 _ELEMENTS = re.compile(
     rb"""(?P<skipped>\s+|--[^\n]*)
-    | (?P<word>[\w\#]+(?:\.\d[\w\#]*)?)
+    | (?P<word>[\w\#\x80-\xff]+(?:\.\d[\w\#]*)?)
     | (?P<text>"[^"\n]*")
     | (?P<character>'.')
     | (?P<other>=>|\.\.|\*\*|:=|/=|>=|<=|<<|>>|<>|.)""",
@@ -36,8 +42,14 @@ def elements(source: bytes) -> list[bytes]:
         if kind == "skipped":
             continue
         found.append(element)
-        named = kind in ("word", "text") or element in (b")", b"]")
+        named = kind == "text" or element in (b")", b"]", b"@") or _is_name(kind, found)
     return found
+
+
+def _is_name(kind: str, found: Sequence[bytes]) -> bool:
+    """Whether the last element is a name or a number; behind an apostrophe it is an attribute."""
+    attribute = len(found) > 1 and found[-2] == b"'"
+    return kind == "word" and (attribute or found[-1].lower() not in _RESERVED)
 
 
 def digest(source: bytes) -> str:

@@ -36,7 +36,7 @@ class Outside:
 
     name: str
     location: str
-    """File and line of its declaration; the file alone of a whole unit."""
+    """File and line of its declaration; the file alone of a whole unit, and of a kept result."""
 
 
 @dataclass(frozen=True, slots=True)

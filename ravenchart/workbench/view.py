@@ -18,7 +18,7 @@ from ravenchart.analysis.present.bars import row_of
 from ravenchart.analysis.present.sentences import overload_lines, verdict_line
 from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.analysis.units import microseconds
+from ravenchart.analysis.units import TENTH, microseconds
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
 from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
@@ -195,7 +195,7 @@ def _response(good: Analysis, saved: Analysis, name: str) -> Json:
         "bound_text": _us(row["bound"]),
         "limit": row["deadline"],
         "limit_text": microseconds(row["deadline"]),
-        "slack_text": _us(row["slack"]),
+        "slack_text": None if row["slack"] is None else microseconds(row["slack"] // TENTH * TENTH),
         "wcet_text": microseconds(row["longest"] if task is None else task.wcet),
         "word": row["word"],
         "met": row["met"],

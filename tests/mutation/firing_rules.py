@@ -183,7 +183,7 @@ def _is_literal(value: object) -> bool:
 def order(file: str, units: Units) -> Iterator[Broken]:
     """Two neighbours of a firing in the other order: exits, effects, entries, or two effects of
     which one reads what the other sets; what is declared of the configuration before it is set;
-    two lanes that fire in the other order."""
+    two regions whose transitions are taken in the other order."""
     unit = units[file]
     entered = {one.name: one.inner.node for one in bodies(unit)}
     for place, row in _rows(unit):
@@ -198,13 +198,13 @@ def order(file: str, units: Units) -> Iterator[Broken]:
         if isinstance(second.node, Assign) and _uses(second.node.value, _assigned(first.node)):
             yield "Fire", "late", exchanged(first, second)
     step = body_of(unit, "Step")
-    lanes = [] if step is None else [s for s in step.inner.within(IfStatement) if _of_lane(s.node)]
-    for one, other in pairwise(lanes):
-        yield "Step", "lanes", exchanged(one, other)
+    every = [] if step is None else step.inner.within(IfStatement)
+    for one, other in pairwise(s for s in every if _of_region(s.node)):
+        yield "Step", "regions", exchanged(one, other)
 
 
-def _of_lane(statement: IfStatement) -> bool:
-    """Does it fire what is chosen for a lane, if something is?"""
+def _of_region(statement: IfStatement) -> bool:
+    """Whether it takes the transition that is selected for a region."""
     condition = statement.branches[0][0]
     if isinstance(condition, OperatorChain) and condition.operator == "and then":
         condition = condition.operands[0]

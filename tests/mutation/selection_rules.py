@@ -26,7 +26,7 @@ from ravenchart.gen.emit.ada.expressions import (
     both,
 )
 from ravenchart.gen.emit.ada.named import DottedName, ref
-from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement
+from ravenchart.gen.emit.ada.statements import Assign, Case, IfStatement, Return
 from ravenchart.gen.emit.charts.shape import PASSING
 
 from .mutants import Broken, Units
@@ -46,7 +46,7 @@ from .nodes import (
 )
 
 _IN_SOURCE, _ENABLED = ref("In_Source"), ref("Enabled")
-_SELECTED = "Selected"
+_SELECTED, _SEGMENT = "Selected", "Next_Segment"
 _NOW, _NONE = ref("Now"), ref("None")
 _COMPARED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "=": "/=", "/=": "="}
 
@@ -83,7 +83,7 @@ def source_in_code(file: str, units: Units) -> Iterator[Broken]:
     for _, puts in each_following([("Choose", call) for call in asked]):
         yield "Choose", "region", puts
     for one, alternatives in _searches(unit):
-        for place in range(len(alternatives.node.branches)):
+        for place in range(len(alternatives.node.branches) if one.name != _SEGMENT else 0):
             yield one.name, "forget", put(alternatives.at("branches", place, 1), _NONE)
 
 
@@ -97,9 +97,10 @@ def _assigned(unit: Unit) -> list[Spot[Assign]]:
 def _searches(unit: Unit) -> Iterator[tuple[Body, Spot[IfExpr]]]:
     """Where a function asks one transition after the other whether it is enabled."""
     for one in bodies(unit):
-        if one.name.split("_")[0] == _SELECTED and not one.is_expression:
-            for alternatives in one.inner.within(IfExpr):
-                yield one, alternatives
+        if one.name.split("_")[0] == _SELECTED or one.name == _SEGMENT:
+            for gives in one.inner.within(Return):
+                if isinstance(gives.node.value, IfExpr):
+                    yield one, gives.at("value")
 
 
 def source_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -135,10 +136,10 @@ def trigger_in_code(file: str, units: Units) -> Iterator[Broken]:
                 last = len(case.node.branches) - 1  # `others`
                 rows = [case.at("branches", place, 0) for place in range(last)]
                 yield from ((one.name, "trigger", exchanged(*pair)) for pair in pairwise(rows))
-    for call in _calls(units[file], "Next_Segment", _ENABLED):
-        for arg in call.within(Arg):
+    for one, alternatives in _searches(units[file]):
+        for arg in alternatives.within(Arg) if one.name == _SEGMENT else ():
             if arg.node.value == ref(PASSING):
-                yield "Next_Segment", "trigger", put(arg.at("value"), ref("Conditions"))
+                yield one.name, "trigger", put(arg.at("value"), ref("Conditions"))
 
 
 def trigger_declared(file: str, units: Units) -> Iterator[Broken]:
@@ -186,9 +187,12 @@ def _guards(condition: Spot[Expr]) -> Iterator[tuple[str, tuple[Put, ...]]]:
 def priority_in_code(file: str, units: Units) -> Iterator[Broken]:
     """A later transition that is asked first; an outer region that selects although an inner one
     does, or before it."""
+    alike = {t: n for n, (ts, _) in enumerate(_alternatives(units[file], "In_Source")) for t in ts}
     for one, alternatives in _searches(units[file]):
         rows = [alternatives.at("branches", n) for n in range(len(alternatives.node.branches))]
-        yield from ((one.name, "precede", exchanged(*pair)) for pair in pairwise(rows))
+        for first, second in pairwise(rows):
+            if alike.get(first.node[1]) == alike.get(second.node[1]):
+                yield one.name, "precede", exchanged(first, second)
     choose = body_of(units[file], "Choose")
     if choose is None:
         return

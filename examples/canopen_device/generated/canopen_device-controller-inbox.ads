@@ -16,7 +16,11 @@ is
      (Start_Of_Region, On_Asked, On_Ordered, On_Sync_Came, Conditions);
 
    --  [Controller.Inbox.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  ask: in Open on Asked [(in(Nmt.Pre_Operational) or
+   --  in(Nmt.Operational)) and event.command /= 128]
+   --  order: in Open on Ordered [in(Nmt.Operational)]
+   --  synchronise: in Open on Sync_Came [in(Nmt.Operational)]
    type Selection is
      (Initial_Entry,
       Ask,            --  [ask] device.yaml:105

@@ -25,7 +25,20 @@ is
       Expiry_Of_Stop, Expiry_Of_Last_Call, Expiry_Of_Gone, Conditions);
 
    --  [Crossing.Lights.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  stopped: Stopping -> Held after 2 s
+   --  get_ready: Held -> Red_Yellow when road_free and not requested
+   --  long_enough: Least -> Longer after 10 s
+   --  slow_down: Longer -> Yellow when requested
+   --  start: Red_Yellow -> Green after 1 s
+   --  stop: Yellow -> Red after 3 s
+   --  ask: Nobody -> Waiting on Wish
+   --  walk: Waiting -> On_The_Road when cars_stopped
+   --  last_call: Walking -> Leaving after 6 s
+   --  gone: On_The_Road -> Dont_Walk after 10 s
+   --  into_service: Blinking -> Working on Ordered [event = Work]
+   --  out_of_service: Working -> Blinking on Ordered [event = Blink]
+   --  blink: in Blinking every 500 ms
    type Selection is
      (Initial_Entry,
       Stopped,         --  [stopped] model.yaml:115
@@ -432,8 +445,9 @@ is
         when Into_Service => Item.Value_Order = Crossing_System.Work,
         when Out_Of_Service => Item.Value_Order = Crossing_System.Blink,
         when others => True);
-   --  Whether the guard of T holds. True where the step may have taken
-   --  another transition before T.
+   --  Whether the guard of T holds, as far as an invariant may need it.
+   --  True for a transition without a guard, and for one before which the
+   --  step may have taken another one.
 
    procedure Tick (Self : in out Region)
    with

@@ -12,7 +12,14 @@ is
    type Occurrence is (Start_Of_Region, Conditions);
 
    --  [Actuator.Cycle.transitions] in order of precedence, innermost source
-   --  first
+   --  first:
+   --  at_peak: Pulling -> Releasing when force >= peak
+   --  at_zero: Releasing -> Pulling when force <= 0
+   --  start: Resting -> Moving when order = Work and permit and condition =
+   --  Idle
+   --  trip: Moving -> Resting when not permit
+   --  halt: Moving -> Resting when order = Halt
+   --  done: Moving -> Resting when cycles >= planned
    type Selection is
      (Initial_Entry,
       At_Peak,        --  [at_peak] model.yaml:115
@@ -135,8 +142,9 @@ is
         when Halt => Ins.Order.Value = Fatigue_Rig.Halt,
         when Done => Data.Cycles >= Ins.Planned,
         when others => True);
-   --  Whether the guard of T holds. True where the step may have taken
-   --  another transition before T.
+   --  Whether the guard of T holds, as far as an invariant may need it.
+   --  True for a transition without a guard, and for one before which the
+   --  step may have taken another one.
 
    procedure Poll (Self : Region; Now : out Occurrence)
    with

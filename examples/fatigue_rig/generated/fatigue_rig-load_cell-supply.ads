@@ -12,7 +12,10 @@ is
    type Occurrence is (Start_Of_Region, On_Cell_Silent, Conditions);
 
    --  [Load_Cell.Supply.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  lose: Supplied -> Silent on Cell_Silent
+   --  recover: Silent -> Supplied when fresh(raw)
+   --  still_silent: in Silent on Cell_Silent
    type Selection is
      (Initial_Entry,
       Lose,           --  [lose] model.yaml:35

@@ -11,7 +11,10 @@ is
    type Occurrence is (Start_Of_Region, Conditions);
 
    --  [Watch.Guard.transitions] in order of precedence, innermost source
-   --  first
+   --  first:
+   --  supplied: Waiting -> Watching when sound
+   --  cell_lost: Watching -> Tripped when not sound
+   --  overload: Watching -> Tripped when force > limit or force < -limit
    type Selection is
      (Initial_Entry,
       Supplied,       --  [supplied] model.yaml:70
@@ -113,8 +116,9 @@ is
            Ins.Force.Value > Ins.Limit
            or else Ins.Force.Value < (-Ins.Limit),
         when others => True);
-   --  Whether the guard of T holds. True where the step may have taken
-   --  another transition before T.
+   --  Whether the guard of T holds, as far as an invariant may need it.
+   --  True for a transition without a guard, and for one before which the
+   --  step may have taken another one.
 
    procedure Poll (Self : Region; Now : out Occurrence)
    with

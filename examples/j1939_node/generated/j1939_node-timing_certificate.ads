@@ -22,15 +22,17 @@ is
    --  J: longest time from the event to the release.
    --  C: longest execution (with context switches) or transmission.
    --  B: blocking.
-   --  R: claimed response time, from the event.
+   --  Wcet: worst-case execution time of an activity, with the commands
+   --  that it calls.
+   --  R: claimed response-time bound, from the event.
    --  W: claimed time from the start of a busy period.
-   --  X_Up (W): demand within W of X and all before it.
-   --  X_Rest (W): demand within W of X and those behind it at its level.
+   --  X_Up (W): demand within W of X and all of higher priority.
+   --  X_Rest (W): demand within W of X and the later ones of its priority.
    --  Needs: the demand within W. If the demand is more than W, W is too
    --  short. If the demand is less, a term is missing.
    --
-   --  The claimed response times: the bound of each element, and the jitter
-   --  of those that it releases.
+   --  The claimed response-time bounds: the bound of each element, and the
+   --  jitter of those that it releases.
    Reception_R : constant := 665_000;
    Protocol_R : constant := 1_305_000;
    Control_R : constant := 1_425_000;
@@ -317,8 +319,8 @@ is
       "board must keep the order of its priorities");
 
    --  [line] Bit_Rate: bits in a second. Bit: one bit in nanoseconds,
-   --  rounded up. A message waits for the longest frame that goes behind it
-   --  and has begun, and for the frames that go before it.
+   --  rounded up. A message waits for the longest frame of lower priority,
+   --  which has begun, and for the frames of higher priority.
    --  Of a message, Stuffed: bits that stuffing can lengthen by a quarter.
    --  Bits: the longest frame, with 10 bits that are not stuffed and 3 to
    --  the next frame. Time_Of: the time of that frame.

@@ -13,7 +13,8 @@ is
    type Occurrence is (Start_Of_Region, On_Pressed, Conditions);
 
    --  [Pump.Keys.transitions] in order of precedence, innermost source
-   --  first
+   --  first:
+   --  pressed: in Listening on Pressed
    type Selection is
      (Initial_Entry,
       Pressed,        --  [pressed] model.yaml:163

@@ -16,7 +16,10 @@ is
      (Start_Of_Region, Expiry_Of_Begin_Task, Expiry_Of_Too_Late, Conditions);
 
    --  [Supervisor.Task_Of_Arm.transitions] in order of precedence,
-   --  innermost source first
+   --  innermost source first:
+   --  begin_task: Parked -> Reaching after 100 ms
+   --  there: Reaching -> Holding when Get_Position.axis_1 >= 280
+   --  too_late: Reaching -> Gave_Up after 2 s
    type Selection is
      (Initial_Entry,
       Begin_Task,     --  [begin_task] application.yaml:33

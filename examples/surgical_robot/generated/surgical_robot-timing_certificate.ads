@@ -22,15 +22,17 @@ is
    --  J: longest time from the event to the release.
    --  C: longest execution (with context switches) or transmission.
    --  B: blocking.
-   --  R: claimed response time, from the event.
+   --  Wcet: worst-case execution time of an activity, with the commands
+   --  that it calls.
+   --  R: claimed response-time bound, from the event.
    --  W: claimed time from the start of a busy period.
-   --  X_Up (W): demand within W of X and all before it.
-   --  X_Rest (W): demand within W of X and those behind it at its level.
+   --  X_Up (W): demand within W of X and all of higher priority.
+   --  X_Rest (W): demand within W of X and the later ones of its priority.
    --  Needs: the demand within W. If the demand is more than W, W is too
    --  short. If the demand is less, a term is missing.
    --
-   --  The claimed response times: the bound of each element, and the jitter
-   --  of those that it releases.
+   --  The claimed response-time bounds: the bound of each element, and the
+   --  jitter of those that it releases.
    Servo_Loop_R : constant := 352_000;
    Supervision_R : constant := 672_000;
    Board_Supervisor_R : constant := 82_000;

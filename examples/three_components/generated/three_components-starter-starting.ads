@@ -16,7 +16,9 @@ is
      (Start_Of_Region, On_Token_Came, Expiry_Of_Start, Conditions);
 
    --  [Starter.Starting.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  start: Before -> After_Start after 40 ms
+   --  again: After_Start -> After_Start on Token_Came
    type Selection is
      (Initial_Entry,
       Start,          --  [start] model.yaml:76

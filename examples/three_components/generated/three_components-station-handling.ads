@@ -12,7 +12,9 @@ is
      (Start_Of_Region, On_Token_Came, On_Worked, Conditions);
 
    --  [Station.Handling.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  take: Empty -> Holding on Token_Came
+   --  pass_on: Holding -> Empty on Worked
    type Selection is
      (Initial_Entry,
       Take,           --  [take] model.yaml:28

@@ -16,7 +16,9 @@ is
      (Start_Of_Region, On_Token_Came, Expiry_Of_Calm, Conditions);
 
    --  [Station.Watching.transitions] in order of precedence, innermost
-   --  source first
+   --  source first:
+   --  seen: Quiet -> Busy on Token_Came
+   --  calm: Busy -> Quiet after 40 ms
    type Selection is
      (Initial_Entry,
       Seen,           --  [seen] model.yaml:45

@@ -144,13 +144,13 @@ def default_value(system: System, of_type: Type) -> Expr:
 
 
 _BELOW_COMPONENTS = """
-active active_at_first beginning box chart choice choose chosen conditions deferrals domain
-domain_of done_states due element_id elements enabled ending event event_lists everything executed
-fire fired firing firings follows health_counts i in_source initial_entry inputs ins is_deferral
-is_deferred is_freed is_segment is_selection item memory name name_of nanoseconds next_segment
-none nothing now number occurrence offer outbox passing past poll region released remembered
-reports selected selection self start_of_region status step target tick time_outs timers_after
-to_occurrence top_transition transition variables visit was
+active active_at_first beginning box chart choice choose chosen conditions configuration deferrals
+domain domain_of done_states due element_id elements enabled ending event event_lists everything
+executed fire fired firing firings follows health_counts i in_source initial_entry inputs ins
+is_deferral is_deferred is_freed is_segment is_selection item memory name name_of nanoseconds
+next_segment none nothing now number occurrence offer outbox passing past poll region released
+remembered reports selected selection self start_of_region status step target tick time_outs
+timers_after to_occurrence top_transition transition variables visit was
 """
 BELOW_COMPONENTS = frozenset(_BELOW_COMPONENTS.split())
 """Names in lower case that units below components and instances declare: they would hide one."""

@@ -69,8 +69,8 @@ def bus_terms(system: System, bus: Bus) -> list[Decl]:
     own = ada_case(bus.name)
     words = (
         f"[{bus.name}] Bit_Rate: bits in a second. Bit: one bit in nanoseconds, rounded up. A "
-        "message waits for the longest frame that goes behind it and has begun, and for the frames "
-        f"that go before it.\nOf a message, {explained(bus)}"
+        "message waits for the longest frame of lower priority, which has begun, and for the "
+        f"frames of higher priority.\nOf a message, {explained(bus)}"
     )
     messages = _of(system, bus)
     items: list[Decl] = [Comment(words), *rate_terms(bus, messages)]

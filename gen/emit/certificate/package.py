@@ -75,16 +75,17 @@ LETTERS = (
     "J: longest time from the event to the release.\n"
     "C: longest execution (with context switches) or transmission.\n"
     "B: blocking.\n"
-    "R: claimed response time, from the event.\n"
+    "Wcet: worst-case execution time of an activity, with the commands that it calls.\n"
+    "R: claimed response-time bound, from the event.\n"
     "W: claimed time from the start of a busy period.\n"
-    "X_Up (W): demand within W of X and all before it.\n"
-    "X_Rest (W): demand within W of X and those behind it at its level.\n"
+    "X_Up (W): demand within W of X and all of higher priority.\n"
+    "X_Rest (W): demand within W of X and the later ones of its priority.\n"
     "Needs: the demand within W. If the demand is more than W, W is too short. If the demand is "
     "less, a term is missing.\n"
 )
 
 CLAIMED = (
-    "The claimed response times: the bound of each element, and the jitter of those that it "
+    "The claimed response-time bounds: the bound of each element, and the jitter of those that it "
     "releases."
 )
 

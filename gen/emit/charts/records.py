@@ -39,6 +39,7 @@ from .guards import guard_operators, guards_of
 from .lasting import TIME_OUTS, domain_types, spans_of_states
 from .safety import Safety
 from .shape import START, RegionShape
+from .summary import summary
 from .working import done_types, work_fields
 
 TIMED = (ref("Ravenchart.Timers.Timer"), ref("Ravenchart.Timers.Timer_Array"))
@@ -53,7 +54,10 @@ def chart_types(shape: RegionShape) -> list[Decl]:
     items += [
         Comment(f"[{path}] the occurrences that a step can handle"),
         EnumType("Occurrence", shape.occurrences()),
-        Comment(f"[{path}.transitions] in order of precedence, innermost source first"),
+        Comment(
+            f"[{path}.transitions] in order of precedence, innermost source first:\n"
+            + "\n".join(map(summary, shape.firings))
+        ),
         EnumType("Selection", (START, *names, "None"), _places(shape)),
         SubtypeDeclaration("Firing", _selection_of((START, *(names or ("None",))))),
         SubtypeDeclaration("Transition", _selection_of(names)),
@@ -123,8 +127,8 @@ def memory(shape: RegionShape) -> list[Decl]:
         past.append(RecordComponent(one.last, shape.memory_type(one), shape.literal(first)))
         past.append(RecordComponent(one.known, "Boolean", FALSE))
     return [
-        RecordDeclaration("Memory", tuple(past)),
         Comment("The last leaf left in each region that a history restores."),
+        RecordDeclaration("Memory", tuple(past)),
     ]
 
 

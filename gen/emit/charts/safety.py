@@ -281,7 +281,8 @@ _BETWEEN = (
     "data are initial."
 )
 _GUARDS = (
-    "Whether the guard of T holds. True where the step may have taken another transition before T."
+    "Whether the guard of T holds, as far as an invariant may need it. True for a transition "
+    "without a guard, and for one before which the step may have taken another one."
 )
 _OTHERS = (OTHERS, TRUE)
 

@@ -83,7 +83,6 @@ from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
     fault_units,
     note_of,
-    traced,
 )
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.commands import Need, Provided
@@ -410,30 +409,36 @@ class Glue(Site):
         """Offer an event to the regions that it is for, and trace it, once for all events."""
         component = self.instance.component
         name = name_of(component, "Item")
-        rows = [
-            (ref(self.component, event_literal(event.name)), self._offered(event))
-            for event in component.events
-        ]
+        queued = {event.name: self._offered(event) for event in component.events}
+        noted = note_of(self.system, "Raised", self._number_of_event(name))
+        body: tuple[Stmt, ...]
+        if len(set(queued.values())) == 1 and all(queued.values()):
+            body = (*next(iter(queued.values())), *noted)
+        else:
+            some = any(queued.values())
+            unheard = (Return(),) if noted and some else (NULL,)
+            rows = [
+                (ref(self.component, event_literal(event.name)), queued[event.name] or unheard)
+                for event in component.events
+            ]
+            body = (case_of(name, rows), *(noted if some else ()))
+        return Subprogram("Offer", self._offer_spec().params, body=body)
+
+    def _number_of_event(self, name: DottedName) -> Expr:
+        """The element number of an event: those of an instance follow each other."""
+        component = self.instance.component
         first = ref("Elements", element_constant(self._element(component.events[0].name), "event"))
         position = call(Attribute(ref(self.component, name_type(component)), "Pos"), name)
-        number = OperatorChain("+", (first, call(ELEMENT_ID, position)))
-        offered: tuple[Stmt, ...] = (case_of(name, rows),)
-        if all(steps == rows[0][1] for _, steps in rows):
-            offered = rows[0][1]
-        return Subprogram(
-            "Offer",
-            self._offer_spec().params,
-            body=(*offered, *note_of(self.system, "Raised", number)),
-        )
+        return OperatorChain("+", (first, call(ELEMENT_ID, position)))
 
     def _offered(self, event: Event) -> tuple[Stmt, ...]:
-        """Queue an event for each region that it is for, and ask buses to recover; else return."""
+        """Queue an event for each region that it is for, and ask buses to recover."""
         component = self.instance.component
         heard = [r for r in component.regions if event.name in r.events()]
         steps = [enqueue(component, region, event, ref("Item")) for region in heard]
         for bus in self._asked(event.name):
             steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
-        return tuple(steps) or ((Return(),) if traced(self.system) else (NULL,))
+        return tuple(steps)
 
     def _asked(self, event: str) -> tuple[str, ...]:
         """The buses that an event asks to recover."""

@@ -17,7 +17,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.findings.differences import Wording, differences
 from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.analysis.plain.results import PlainResult, analyse_plain, everything
-from ravenchart.analysis.present.page import both
+from ravenchart.analysis.present.page import both, left
 from ravenchart.analysis.present.plots import figure_svg, histogram, hop_pieces
 from ravenchart.analysis.system.critical import frame_schedule
 from ravenchart.analysis.units import milliseconds
@@ -92,6 +92,8 @@ def test_milliseconds_stand_beside_microseconds_from_1_ms_on() -> None:
         "-2.5",
     ]
     assert "ms" not in both(999_999)
+    assert (">12.4<" in both(12_345), ">12.3<" in left(12_345)) == (True, True)
+    assert '<data value="-2501">-2.6</data>' in left(-2_501)
     assert '<data value="1500000">1500</data> <small class="ms">1.5 ms</small>' in both(1_500_000)
 
 

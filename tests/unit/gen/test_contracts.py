@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from ravenchart.gen.derive.kept import kept_of
-from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.names import LONG_NAME
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.component import Activity, Component
+from ravenchart.gen.model.notation import shown_expression
 from ravenchart.proof.contracts import HELPS
 from ravenchart.proof.spark_results import Open
 from ravenchart.proof.unproved import findings

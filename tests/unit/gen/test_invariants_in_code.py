@@ -13,7 +13,7 @@ from ravenchart.behaviour.rules import inductive, moves
 from ravenchart.behaviour.rules.inductive import contracts
 from ravenchart.building import checking
 from ravenchart.command_line import main
-from ravenchart.gen.draw.words import shown_expression
+from ravenchart.gen.model.notation import shown_expression
 from ravenchart.gen.model.safety import Fact
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT

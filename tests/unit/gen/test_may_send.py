@@ -18,7 +18,6 @@ from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.diagnostics import Diagnostic
-from ravenchart.gen.draw.words import shown_expression
 from ravenchart.gen.emit.buses.dbc import emit_dbc
 from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import generate
@@ -26,6 +25,7 @@ from ravenchart.gen.emit.tables.trace_map import trace_json
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.model.component import Activity
+from ravenchart.gen.model.notation import shown_expression
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
 from ravenchart.independent.check import checked

@@ -34,6 +34,8 @@ SOURCES = sorted(
         (b"A := \"x\"'Length; -- '", b'A := "x"\'Length;'),
         (b"A := B (1)'Image; -- \"", b"A := B (1)'Image;"),
         (b"A := B.all'Size; -- \"", b"A := B.all'Size;"),
+        (b"""A := B'Range'First; -- \"""", b"A := B'Range'First;"),
+        (b"""A := B'Access'Size; -- '"'""", b"A := B'Access'Size;"),
     ],
 )
 def test_comments_and_layout_are_no_code(one: bytes, other: bytes) -> None:
@@ -51,6 +53,11 @@ def test_comments_and_layout_are_no_code(one: bytes, other: bytes) -> None:
         (b"A := Character'('-'); B;", b"A := Character'('-');"),
         (b"end A;", b"endA;"),
         (b'A := B\'(""); -- x\nC;', b'A := B\'("");'),
+        (b"""when '"' => return "--" & X;""", b"""when '"' => return "--" & Y;"""),
+        (b"""else '"'); Put ("a  b");""", b"""else '"'); Put ("a b");"""),
+        (b"""(IN '"' | '-' => "--x")""", b"""(IN '"' | '-' => "--y")"""),
+        (b"""A := @'("--"); B;""", b"""A := @'("--"); C;"""),
+        ("a é".encode(), "aé".encode()),
     ],
 )
 def test_other_code_has_another_digest(one: bytes, other: bytes) -> None:

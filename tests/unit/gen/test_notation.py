@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravenchart.gen.draw.words import action, shown_expression, trigger
 from ravenchart.gen.language.expressions import Term, parse
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -28,6 +27,7 @@ from ravenchart.gen.language.terms import (
     Send,
     Set,
 )
+from ravenchart.gen.model.notation import action, shown_expression, trigger
 from ravenchart.gen.model.statechart import (
     After,
     Completion,
