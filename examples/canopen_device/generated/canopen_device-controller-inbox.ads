@@ -17,10 +17,10 @@ is
 
    --  [Controller.Inbox.transitions] in order of precedence, innermost
    --  source first:
-   --  ask: in Open on Asked [(in(Nmt.Pre_Operational) or
-   --  in(Nmt.Operational)) and event.command /= 128]
-   --  order: in Open on Ordered [in(Nmt.Operational)]
-   --  synchronise: in Open on Sync_Came [in(Nmt.Operational)]
+   --    ask: in Open on Asked [(in(Nmt.Pre_Operational) or
+   --      in(Nmt.Operational)) and event.command /= 128]
+   --    order: in Open on Ordered [in(Nmt.Operational)]
+   --    synchronise: in Open on Sync_Came [in(Nmt.Operational)]
    type Selection is
      (Initial_Entry,
       Ask,            --  [ask] device.yaml:105

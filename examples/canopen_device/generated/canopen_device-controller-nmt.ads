@@ -18,19 +18,20 @@ is
 
    --  [Controller.Nmt.transitions] in order of precedence, innermost source
    --  first:
-   --  initialised: Initialisation -> Boot_Up_Due after 200 ms
-   --  booted: Boot_Up_Due -> Ready when beat.boots = boots
-   --  start: Ready -> Operational on Commanded [event.service = Start and
-   --  (event.node = 0 or event.node = node_id)]
-   --  stop: Ready -> Stopped on Commanded [event.service = Stop and
-   --  (event.node = 0 or event.node = node_id)]
-   --  prepare: Ready -> Pre_Operational on Commanded [event.service =
-   --  Enter_Pre_Operational and (event.node = 0 or event.node = node_id)]
-   --  reset_node: Ready -> Initialisation on Commanded [event.service =
-   --  Reset_Node and (event.node = 0 or event.node = node_id)]
-   --  reset_communication: Ready -> Initialisation on Commanded
-   --  [event.service = Reset_Communication and (event.node = 0 or
-   --  event.node = node_id)]
+   --    initialised: Initialisation -> Boot_Up_Due after 200 ms
+   --    booted: Boot_Up_Due -> Ready when beat.boots = boots
+   --    start: Ready -> Operational on Commanded [event.service = Start and
+   --      (event.node = 0 or event.node = node_id)]
+   --    stop: Ready -> Stopped on Commanded [event.service = Stop and
+   --      (event.node = 0 or event.node = node_id)]
+   --    prepare: Ready -> Pre_Operational on Commanded [event.service =
+   --      Enter_Pre_Operational and (event.node = 0 or event.node =
+   --      node_id)]
+   --    reset_node: Ready -> Initialisation on Commanded [event.service =
+   --      Reset_Node and (event.node = 0 or event.node = node_id)]
+   --    reset_communication: Ready -> Initialisation on Commanded
+   --      [event.service = Reset_Communication and (event.node = 0 or
+   --      event.node = node_id)]
    type Selection is
      (Initial_Entry,
       Initialised,          --  [initialised] device.yaml:66

@@ -17,15 +17,15 @@ is
 
    --  [Joint.Monitoring.transitions] in order of precedence, innermost
    --  source first:
-   --  strayed: Watching -> Alarmed when homed and abs(measured.error) >
-   --  20000
-   --  limit_hit: Watching -> Alarmed when in(Motion.Moving) and
-   --  feedback.limit /= Clear
-   --  end_reached: Watching -> Alarmed when in(Motion.Homing) and
-   --  feedback.limit = High_End
-   --  drive_failed: Watching -> Alarmed when fresh(feedback) and
-   --  feedback.condition = Faulted and in(Motion.Operational)
-   --  calm: Alarmed -> Watching after 500 ms
+   --    strayed: Watching -> Alarmed when homed and abs(measured.error) >
+   --      20000
+   --    limit_hit: Watching -> Alarmed when in(Motion.Moving) and
+   --      feedback.limit /= Clear
+   --    end_reached: Watching -> Alarmed when in(Motion.Homing) and
+   --      feedback.limit = High_End
+   --    drive_failed: Watching -> Alarmed when fresh(feedback) and
+   --      feedback.condition = Faulted and in(Motion.Operational)
+   --    calm: Alarmed -> Watching after 500 ms
    type Selection is
      (Initial_Entry,
       Strayed,        --  [strayed] joint.yaml:122

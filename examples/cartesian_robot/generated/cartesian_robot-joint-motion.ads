@@ -19,24 +19,25 @@ is
 
    --  [Joint.Motion.transitions] in order of precedence, innermost source
    --  first:
-   --  end_found: Seeking -> Backing_Off when feedback.limit = Low_End
-   --  end_left: Backing_Off -> Idle when feedback.limit = Clear
-   --  at_speed: Accelerating -> Cruising when profile.phase = At_Speed
-   --  no_cruise: Accelerating -> Braking when profile.phase = Slowing_Down
-   --  brake: Cruising -> Braking when profile.phase = Slowing_Down
-   --  start_homing: Idle -> Homing on Ordered [order.kind = Home and
-   --  fresh(feedback)]
-   --  no_end: Homing -> Drive after 20 s
-   --  start_move: Idle -> Moving on Ordered [order.kind = Move and homed]
-   --  arrived: Moving -> Idle when profile.phase = At_Rest and
-   --  profile.position = goal.target and abs(measured.error) < 2000
-   --  halt: Operational -> Idle on Ordered [order.kind = Halt]
-   --  lost: Operational -> Drive on Feedback_Lost
-   --  failed: Operational -> Drive on Drive_Failed
-   --  strayed: Operational -> Drive on Strayed
-   --  limit: Operational -> Limit on Limit_Hit
-   --  reset: Fault -> Operational on Ordered [order.kind = Reset and
-   --  fresh(feedback)]
+   --    end_found: Seeking -> Backing_Off when feedback.limit = Low_End
+   --    end_left: Backing_Off -> Idle when feedback.limit = Clear
+   --    at_speed: Accelerating -> Cruising when profile.phase = At_Speed
+   --    no_cruise: Accelerating -> Braking when profile.phase =
+   --      Slowing_Down
+   --    brake: Cruising -> Braking when profile.phase = Slowing_Down
+   --    start_homing: Idle -> Homing on Ordered [order.kind = Home and
+   --      fresh(feedback)]
+   --    no_end: Homing -> Drive after 20 s
+   --    start_move: Idle -> Moving on Ordered [order.kind = Move and homed]
+   --    arrived: Moving -> Idle when profile.phase = At_Rest and
+   --      profile.position = goal.target and abs(measured.error) < 2000
+   --    halt: Operational -> Idle on Ordered [order.kind = Halt]
+   --    lost: Operational -> Drive on Feedback_Lost
+   --    failed: Operational -> Drive on Drive_Failed
+   --    strayed: Operational -> Drive on Strayed
+   --    limit: Operational -> Limit on Limit_Hit
+   --    reset: Fault -> Operational on Ordered [order.kind = Reset and
+   --      fresh(feedback)]
    type Selection is
      (Initial_Entry,
       End_Found,      --  [end_found] joint.yaml:81

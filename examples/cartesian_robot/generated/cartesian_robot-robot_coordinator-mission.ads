@@ -18,26 +18,26 @@ is
 
    --  [Robot_Coordinator.Mission.transitions] in order of precedence,
    --  innermost source first:
-   --  under_way: Departing -> Under_Way after 100 ms
-   --  arrived: Under_Way -> Ready when report_x.condition = Standing and
-   --  report_y.condition = Standing and report_z.condition = Standing
-   --  home: Waiting -> Homing on Commanded [command.kind = Home]
-   --  home_again: Ready -> Homing on Commanded [command.kind = Home]
-   --  homed: Homing -> Ready when report_x.condition = Standing and
-   --  report_y.condition = Standing and report_z.condition = Standing
-   --  move: Ready -> Travelling on Commanded [command.kind = Move]
-   --  halt: Travelling -> Failed on Commanded [command.kind = Halt]
-   --  halt_homing: Homing -> Failed on Commanded [command.kind = Halt]
-   --  shut_down_failed: Failed -> Shut_Down on Shutdown
-   --  recover: Failed -> Recovering on Commanded [command.kind = Reset]
-   --  recovered: Recovering -> Waiting when report_x.condition /= Failed
-   --  and report_y.condition /= Failed and report_z.condition /= Failed
-   --  not_recovered: Recovering -> Failed after 200 ms
-   --  shut_down_recovering: Recovering -> Shut_Down on Shutdown
-   --  joint_failed: Active -> Failed when report_x.condition = Failed or
-   --  report_y.condition = Failed or report_z.condition = Failed
-   --  joint_lost: Active -> Failed on Joint_Lost
-   --  shut_down: Active -> Shut_Down on Shutdown
+   --    under_way: Departing -> Under_Way after 100 ms
+   --    arrived: Under_Way -> Ready when report_x.condition = Standing and
+   --      report_y.condition = Standing and report_z.condition = Standing
+   --    home: Waiting -> Homing on Commanded [command.kind = Home]
+   --    home_again: Ready -> Homing on Commanded [command.kind = Home]
+   --    homed: Homing -> Ready when report_x.condition = Standing and
+   --      report_y.condition = Standing and report_z.condition = Standing
+   --    move: Ready -> Travelling on Commanded [command.kind = Move]
+   --    halt: Travelling -> Failed on Commanded [command.kind = Halt]
+   --    halt_homing: Homing -> Failed on Commanded [command.kind = Halt]
+   --    shut_down_failed: Failed -> Shut_Down on Shutdown
+   --    recover: Failed -> Recovering on Commanded [command.kind = Reset]
+   --    recovered: Recovering -> Waiting when report_x.condition /= Failed
+   --      and report_y.condition /= Failed and report_z.condition /= Failed
+   --    not_recovered: Recovering -> Failed after 200 ms
+   --    shut_down_recovering: Recovering -> Shut_Down on Shutdown
+   --    joint_failed: Active -> Failed when report_x.condition = Failed or
+   --      report_y.condition = Failed or report_z.condition = Failed
+   --    joint_lost: Active -> Failed on Joint_Lost
+   --    shut_down: Active -> Shut_Down on Shutdown
    type Selection is
      (Initial_Entry,
       Under_Way,             --  [under_way] coordinator.yaml:68

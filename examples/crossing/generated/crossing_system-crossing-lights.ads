@@ -26,19 +26,19 @@ is
 
    --  [Crossing.Lights.transitions] in order of precedence, innermost
    --  source first:
-   --  stopped: Stopping -> Held after 2 s
-   --  get_ready: Held -> Red_Yellow when road_free and not requested
-   --  long_enough: Least -> Longer after 10 s
-   --  slow_down: Longer -> Yellow when requested
-   --  start: Red_Yellow -> Green after 1 s
-   --  stop: Yellow -> Red after 3 s
-   --  ask: Nobody -> Waiting on Wish
-   --  walk: Waiting -> On_The_Road when cars_stopped
-   --  last_call: Walking -> Leaving after 6 s
-   --  gone: On_The_Road -> Dont_Walk after 10 s
-   --  into_service: Blinking -> Working on Ordered [event = Work]
-   --  out_of_service: Working -> Blinking on Ordered [event = Blink]
-   --  blink: in Blinking every 500 ms
+   --    stopped: Stopping -> Held after 2 s
+   --    get_ready: Held -> Red_Yellow when road_free and not requested
+   --    long_enough: Least -> Longer after 10 s
+   --    slow_down: Longer -> Yellow when requested
+   --    start: Red_Yellow -> Green after 1 s
+   --    stop: Yellow -> Red after 3 s
+   --    ask: Nobody -> Waiting on Wish
+   --    walk: Waiting -> On_The_Road when cars_stopped
+   --    last_call: Walking -> Leaving after 6 s
+   --    gone: On_The_Road -> Dont_Walk after 10 s
+   --    into_service: Blinking -> Working on Ordered [event = Work]
+   --    out_of_service: Working -> Blinking on Ordered [event = Blink]
+   --    blink: in Blinking every 500 ms
    type Selection is
      (Initial_Entry,
       Stopped,         --  [stopped] model.yaml:115

@@ -13,13 +13,13 @@ is
 
    --  [Actuator.Cycle.transitions] in order of precedence, innermost source
    --  first:
-   --  at_peak: Pulling -> Releasing when force >= peak
-   --  at_zero: Releasing -> Pulling when force <= 0
-   --  start: Resting -> Moving when order = Work and permit and condition =
-   --  Idle
-   --  trip: Moving -> Resting when not permit
-   --  halt: Moving -> Resting when order = Halt
-   --  done: Moving -> Resting when cycles >= planned
+   --    at_peak: Pulling -> Releasing when force >= peak
+   --    at_zero: Releasing -> Pulling when force <= 0
+   --    start: Resting -> Moving when order = Work and permit and condition
+   --      = Idle
+   --    trip: Moving -> Resting when not permit
+   --    halt: Moving -> Resting when order = Halt
+   --    done: Moving -> Resting when cycles >= planned
    type Selection is
      (Initial_Entry,
       At_Peak,        --  [at_peak] model.yaml:115

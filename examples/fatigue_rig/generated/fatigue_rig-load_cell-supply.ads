@@ -13,9 +13,9 @@ is
 
    --  [Load_Cell.Supply.transitions] in order of precedence, innermost
    --  source first:
-   --  lose: Supplied -> Silent on Cell_Silent
-   --  recover: Silent -> Supplied when fresh(raw)
-   --  still_silent: in Silent on Cell_Silent
+   --    lose: Supplied -> Silent on Cell_Silent
+   --    recover: Silent -> Supplied when fresh(raw)
+   --    still_silent: in Silent on Cell_Silent
    type Selection is
      (Initial_Entry,
       Lose,           --  [lose] model.yaml:35

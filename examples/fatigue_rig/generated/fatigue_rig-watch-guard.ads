@@ -12,9 +12,9 @@ is
 
    --  [Watch.Guard.transitions] in order of precedence, innermost source
    --  first:
-   --  supplied: Waiting -> Watching when sound
-   --  cell_lost: Watching -> Tripped when not sound
-   --  overload: Watching -> Tripped when force > limit or force < -limit
+   --    supplied: Waiting -> Watching when sound
+   --    cell_lost: Watching -> Tripped when not sound
+   --    overload: Watching -> Tripped when force > limit or force < -limit
    type Selection is
      (Initial_Entry,
       Supplied,       --  [supplied] model.yaml:70

@@ -20,20 +20,20 @@ is
 
    --  [Fan_Controller.Address.transitions] in order of precedence,
    --  innermost source first:
-   --  granted: Claiming -> Claimed after 250 ms
-   --  claim: Before -> Claiming after 200 ms
-   --  yield: Contending -> Yielding on Claimed_Too [event.high < name_high
-   --  or event.high = name_high and event.low < name_low]
-   --  defend: in Contending on Claimed_Too [event.high > name_high or
-   --  event.high = name_high and event.low > name_low]
-   --  give_up: Yielding -> Without_Address after 40 ms
-   --  tell_all: in Contending on Asked_All [event.pgn = 60928]
-   --  tell_us: in Contending on Asked_Us [event.pgn = 60928]
-   --  tell_null: in Contending on Asked_By_Null [event.pgn = 60928]
-   --  tell_lost: Without_Address -> Yielding on Asked_All [event.pgn =
-   --  60928]
-   --  tell_lost_null: Without_Address -> Yielding on Asked_By_Null
-   --  [event.pgn = 60928]
+   --    granted: Claiming -> Claimed after 250 ms
+   --    claim: Before -> Claiming after 200 ms
+   --    yield: Contending -> Yielding on Claimed_Too [event.high <
+   --      name_high or event.high = name_high and event.low < name_low]
+   --    defend: in Contending on Claimed_Too [event.high > name_high or
+   --      event.high = name_high and event.low > name_low]
+   --    give_up: Yielding -> Without_Address after 40 ms
+   --    tell_all: in Contending on Asked_All [event.pgn = 60928]
+   --    tell_us: in Contending on Asked_Us [event.pgn = 60928]
+   --    tell_null: in Contending on Asked_By_Null [event.pgn = 60928]
+   --    tell_lost: Without_Address -> Yielding on Asked_All [event.pgn =
+   --      60928]
+   --    tell_lost_null: Without_Address -> Yielding on Asked_By_Null
+   --      [event.pgn = 60928]
    type Selection is
      (Initial_Entry,
       Granted,         --  [granted] fan.yaml:56

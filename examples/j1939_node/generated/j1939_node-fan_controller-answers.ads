@@ -20,13 +20,13 @@ is
 
    --  [Fan_Controller.Answers.transitions] in order of precedence,
    --  innermost source first:
-   --  with_address: Silent -> Sending when in(Address.Claimed)
-   --  without_address: Sending -> Silent when not in(Address.Claimed)
-   --  cyclic: in Sending every 1 s
-   --  answer_all: in Sending on Asked_All [event.pgn = 65213]
-   --  answer: in Sending on Asked_Us [event.pgn = 65213]
-   --  refuse: in Sending on Asked_Us [event.pgn /= 65213 and event.pgn /=
-   --  60928]
+   --    with_address: Silent -> Sending when in(Address.Claimed)
+   --    without_address: Sending -> Silent when not in(Address.Claimed)
+   --    cyclic: in Sending every 1 s
+   --    answer_all: in Sending on Asked_All [event.pgn = 65213]
+   --    answer: in Sending on Asked_Us [event.pgn = 65213]
+   --    refuse: in Sending on Asked_Us [event.pgn /= 65213 and event.pgn /=
+   --      60928]
    type Selection is
      (Initial_Entry,
       With_Address,     --  [with_address] fan.yaml:109

@@ -30,35 +30,36 @@ is
 
    --  [Pump.Infusion.transitions] in order of precedence, innermost source
    --  first:
-   --  turned: Turning -> Motor_Good on completion
-   --  heard: Listening -> Sensor_Good when fresh(line)
-   --  loaded: Loading -> Maintaining when given >= loading
-   --  change: Maintaining -> Maintaining on New_Portion [event > 0]
-   --  Defer_New_Portion_In_Loading: Loading defers New_Portion
-   --  filled_up: Filling -> Giving on completion
-   --  beat: in Giving every 1 s
-   --  enough: Giving -> All_Given when given >= volume
-   --  Defer_New_Portion_In_Filling: Filling defers New_Portion
-   --  finished: Running -> Trickling on completion
-   --  hush: Sounding -> Silent on Silence
-   --  remind: Silent -> Sounding after 30 s
-   --  Restore_Where_It_Was: Where_It_Was -> the remembered state
-   --  Default_Of_Where_It_Was: Where_It_Was -> the default state
-   --  ready: Self_Test -> Programming on completion
-   --  again: Self_Test -> Self_Test after 5 s
-   --  order_portion: in Programming on New_Portion
-   --  order_volume: in Programming on New_Volume
-   --  start: Programming -> Infusing on Start [portion > 0 and volume > 0]
-   --  stop: Infusing -> Programming on Stop
-   --  lost: Infusing -> Alarm on Sensor_Lost
-   --  trouble: Infusing -> Alarm when line /= Clear
-   --  resume: Alarm -> May_Go_On on Resume
-   --  give_up: Alarm -> Programming on Stop
-   --  Defer_New_Portion_In_Self_Test: Self_Test defers New_Portion
-   --  Defer_New_Volume_In_Self_Test: Self_Test defers New_Volume
-   --  Defer_New_Portion_In_Alarm: Alarm defers New_Portion
-   --  go_on: May_Go_On -> Where_It_Was [fresh(line) and line = Clear]
-   --  not_yet: May_Go_On -> Alarm
+   --    turned: Turning -> Motor_Good on completion
+   --    heard: Listening -> Sensor_Good when fresh(line)
+   --    loaded: Loading -> Maintaining when given >= loading
+   --    change: Maintaining -> Maintaining on New_Portion [event > 0]
+   --    Defer_New_Portion_In_Loading: Loading defers New_Portion
+   --    filled_up: Filling -> Giving on completion
+   --    beat: in Giving every 1 s
+   --    enough: Giving -> All_Given when given >= volume
+   --    Defer_New_Portion_In_Filling: Filling defers New_Portion
+   --    finished: Running -> Trickling on completion
+   --    hush: Sounding -> Silent on Silence
+   --    remind: Silent -> Sounding after 30 s
+   --    Restore_Where_It_Was: Where_It_Was -> the remembered state
+   --    Default_Of_Where_It_Was: Where_It_Was -> the default state
+   --    ready: Self_Test -> Programming on completion
+   --    again: Self_Test -> Self_Test after 5 s
+   --    order_portion: in Programming on New_Portion
+   --    order_volume: in Programming on New_Volume
+   --    start: Programming -> Infusing on Start [portion > 0 and volume >
+   --      0]
+   --    stop: Infusing -> Programming on Stop
+   --    lost: Infusing -> Alarm on Sensor_Lost
+   --    trouble: Infusing -> Alarm when line /= Clear
+   --    resume: Alarm -> May_Go_On on Resume
+   --    give_up: Alarm -> Programming on Stop
+   --    Defer_New_Portion_In_Self_Test: Self_Test defers New_Portion
+   --    Defer_New_Volume_In_Self_Test: Self_Test defers New_Volume
+   --    Defer_New_Portion_In_Alarm: Alarm defers New_Portion
+   --    go_on: May_Go_On -> Where_It_Was [fresh(line) and line = Clear]
+   --    not_yet: May_Go_On -> Alarm
    type Selection is
      (Initial_Entry,
       Turned,                          --  [turned] model.yaml:118

@@ -14,7 +14,7 @@ is
 
    --  [Pump.Keys.transitions] in order of precedence, innermost source
    --  first:
-   --  pressed: in Listening on Pressed
+   --    pressed: in Listening on Pressed
    type Selection is
      (Initial_Entry,
       Pressed,        --  [pressed] model.yaml:163

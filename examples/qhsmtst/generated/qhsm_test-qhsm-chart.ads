@@ -18,28 +18,28 @@ is
 
    --  [Qhsm.Chart.transitions] in order of precedence, innermost source
    --  first:
-   --  s211_d: S211 -> S21_Init on D
-   --  s211_h: S211 -> S_Init on H
-   --  s21_init: S21_Init -> S211
-   --  s11_d: S11 -> S1_Init on D [foo]
-   --  s11_g: S11 -> S211 on G
-   --  s11_h: S11 -> S_Init on H
-   --  s21_a: S21 -> S21 on A
-   --  s21_b: S21 -> S211 on B
-   --  s21_g: S21 -> S1 on G
-   --  s1_init: S1_Init -> S11
-   --  s1_a: S1 -> S1 on A
-   --  s1_b: S1 -> S11 on B
-   --  s1_c: S1 -> S2 on C
-   --  s1_d: S1 -> S_Init on D [not foo]
-   --  s1_f: S1 -> S211 on F
-   --  s1_i: in S1 on I
-   --  s2_c: S2 -> S1 on C
-   --  s2_f: S2 -> S11 on F
-   --  s2_i: in S2 on I [not foo]
-   --  s_init: S_Init -> S11
-   --  s_e: S -> S11 on E
-   --  s_i: in S on I [foo]
+   --    s211_d: S211 -> S21_Init on D
+   --    s211_h: S211 -> S_Init on H
+   --    s21_init: S21_Init -> S211
+   --    s11_d: S11 -> S1_Init on D [foo]
+   --    s11_g: S11 -> S211 on G
+   --    s11_h: S11 -> S_Init on H
+   --    s21_a: S21 -> S21 on A
+   --    s21_b: S21 -> S211 on B
+   --    s21_g: S21 -> S1 on G
+   --    s1_init: S1_Init -> S11
+   --    s1_a: S1 -> S1 on A
+   --    s1_b: S1 -> S11 on B
+   --    s1_c: S1 -> S2 on C
+   --    s1_d: S1 -> S_Init on D [not foo]
+   --    s1_f: S1 -> S211 on F
+   --    s1_i: in S1 on I
+   --    s2_c: S2 -> S1 on C
+   --    s2_f: S2 -> S11 on F
+   --    s2_i: in S2 on I [not foo]
+   --    s_init: S_Init -> S11
+   --    s_e: S -> S11 on E
+   --    s_i: in S on I [foo]
    type Selection is
      (Initial_Entry,
       S211_D,         --  [s211_d] model.yaml:89

@@ -17,9 +17,9 @@ is
 
    --  [Supervisor.Task_Of_Arm.transitions] in order of precedence,
    --  innermost source first:
-   --  begin_task: Parked -> Reaching after 100 ms
-   --  there: Reaching -> Holding when Get_Position.axis_1 >= 280
-   --  too_late: Reaching -> Gave_Up after 2 s
+   --    begin_task: Parked -> Reaching after 100 ms
+   --    there: Reaching -> Holding when Get_Position.axis_1 >= 280
+   --    too_late: Reaching -> Gave_Up after 2 s
    type Selection is
      (Initial_Entry,
       Begin_Task,     --  [begin_task] application.yaml:33

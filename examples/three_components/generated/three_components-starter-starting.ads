@@ -17,8 +17,8 @@ is
 
    --  [Starter.Starting.transitions] in order of precedence, innermost
    --  source first:
-   --  start: Before -> After_Start after 40 ms
-   --  again: After_Start -> After_Start on Token_Came
+   --    start: Before -> After_Start after 40 ms
+   --    again: After_Start -> After_Start on Token_Came
    type Selection is
      (Initial_Entry,
       Start,          --  [start] model.yaml:76

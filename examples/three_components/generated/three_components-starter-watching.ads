@@ -18,9 +18,9 @@ is
 
    --  [Starter.Watching.transitions] in order of precedence, innermost
    --  source first:
-   --  seen: Quiet -> Busy on Token_Came
-   --  calm: Busy -> Quiet after 40 ms
-   --  left: At_Work -> Alone on Station_Silent
+   --    seen: Quiet -> Busy on Token_Came
+   --    calm: Busy -> Quiet after 40 ms
+   --    left: At_Work -> Alone on Station_Silent
    type Selection is
      (Initial_Entry,
       Seen,           --  [seen] model.yaml:103

@@ -13,8 +13,8 @@ is
 
    --  [Station.Handling.transitions] in order of precedence, innermost
    --  source first:
-   --  take: Empty -> Holding on Token_Came
-   --  pass_on: Holding -> Empty on Worked
+   --    take: Empty -> Holding on Token_Came
+   --    pass_on: Holding -> Empty on Worked
    type Selection is
      (Initial_Entry,
       Take,           --  [take] model.yaml:28

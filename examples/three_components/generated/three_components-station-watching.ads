@@ -17,8 +17,8 @@ is
 
    --  [Station.Watching.transitions] in order of precedence, innermost
    --  source first:
-   --  seen: Quiet -> Busy on Token_Came
-   --  calm: Busy -> Quiet after 40 ms
+   --    seen: Quiet -> Busy on Token_Came
+   --    calm: Busy -> Quiet after 40 ms
    type Selection is
      (Initial_Entry,
       Seen,           --  [seen] model.yaml:45

@@ -100,15 +100,16 @@ WIDTH = 79
 
 @lru_cache(maxsize=8192)
 def _comment(text: str) -> Doc:
+    """Its lines; one that begins with spaces keeps them, and goes on two columns further."""
     lines: list[str] = []
     for paragraph in text.split("\n"):
-        line = ""
+        line = margin = paragraph[: len(paragraph) - len(paragraph.lstrip())]
         for word in paragraph.split():
-            if line and len(line) + 1 + len(word) > WIDTH - 10:
+            if line.strip() and len(line) + 1 + len(word) > WIDTH - 10:
                 lines.append(line)
-                line = word
+                line = f"{margin}  {word}" if margin else word
             else:
-                line = f"{line} {word}".strip()
+                line = f"{line} {word}" if line.strip() else line + word
         lines.append(line)
     return upright(*joined([f"--  {line}".rstrip() for line in lines]))
 

@@ -56,7 +56,7 @@ def chart_types(shape: RegionShape) -> list[Decl]:
         EnumType("Occurrence", shape.occurrences()),
         Comment(
             f"[{path}.transitions] in order of precedence, innermost source first:\n"
-            + "\n".join(map(summary, shape.firings))
+            + "\n".join(f"  {summary(firing)}" for firing in shape.firings)
         ),
         EnumType("Selection", (START, *names, "None"), _places(shape)),
         SubtypeDeclaration("Firing", _selection_of((START, *(names or ("None",))))),

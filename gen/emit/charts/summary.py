@@ -41,6 +41,5 @@ def _trigger(firing: Firing) -> str:
                 found.append(f"on {trigger(one) or 'completion'}")
             case _:
                 found.append(trigger(one))
-    return "".join(f" {one}" for one in found[:1] if one) + "".join(
-        f" or {one}" for one in found[1:]
-    )
+    words = " or ".join(filter(None, found))
+    return f" {words}" if words else ""

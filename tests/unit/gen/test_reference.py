@@ -79,7 +79,7 @@ def test_the_page_of_drivers_says_what_the_loopback_driver_does() -> None:
     source = (
         ROOT / "hw_can" / "drivers" / "loopback" / "ravenchart-can-controllers-driver.adb"
     ).read_text()
-    assert "which receives what it sends" in " ".join(source.replace("--", " ").split())
+    assert "which receives the frames that it sends" in " ".join(source.replace("--", " ").split())
     assert "Upper.Receive (F);" in source, "the part of every driver that has the acceptance filter"
     line = next(
         line

@@ -14,17 +14,17 @@ is
 
    --  [Linear_Servo.Drive.transitions] in order of precedence, innermost
    --  source first:
-   --  go: Standing -> Following on Told [order.wish = Follow]
-   --  rest: Following -> Standing on Told [order.wish = Rest]
-   --  lost_at_rest: Standing -> Safe on Nobody_Tells
-   --  lost: Following -> Safe on Nobody_Tells
-   --  cut_off_at_rest: Standing -> Safe_Off_Bus on Bus_Failed
-   --  cut_off: Following -> Safe_Off_Bus on Bus_Failed
-   --  cut_off_besides: Safe -> Safe_Off_Bus on Bus_Failed
-   --  still_cut_off: in Safe_Off_Bus on Bus_Failed
-   --  told_off_bus: in Safe_Off_Bus on Told
-   --  connected: Safe_Off_Bus -> Safe on Bus_Back
-   --  back: Safe -> Standing on Told
+   --    go: Standing -> Following on Told [order.wish = Follow]
+   --    rest: Following -> Standing on Told [order.wish = Rest]
+   --    lost_at_rest: Standing -> Safe on Nobody_Tells
+   --    lost: Following -> Safe on Nobody_Tells
+   --    cut_off_at_rest: Standing -> Safe_Off_Bus on Bus_Failed
+   --    cut_off: Following -> Safe_Off_Bus on Bus_Failed
+   --    cut_off_besides: Safe -> Safe_Off_Bus on Bus_Failed
+   --    still_cut_off: in Safe_Off_Bus on Bus_Failed
+   --    told_off_bus: in Safe_Off_Bus on Told
+   --    connected: Safe_Off_Bus -> Safe on Bus_Back
+   --    back: Safe -> Standing on Told
    type Selection is
      (Initial_Entry,
       Go,               --  [go] servo.yaml:33

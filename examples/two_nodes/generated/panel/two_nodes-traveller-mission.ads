@@ -14,16 +14,16 @@ is
 
    --  [Traveller.Mission.transitions] in order of precedence, innermost
    --  source first:
-   --  there: Outward -> Homeward when report.position = 20000
-   --  home: Homeward -> Outward when report.position = 0
-   --  go: Waiting -> Travelling when fresh(report)
-   --  lost: Travelling -> Safe on Servo_Lost
-   --  cut_off_early: Waiting -> Safe_Off_Bus on Bus_Failed
-   --  cut_off: Travelling -> Safe_Off_Bus on Bus_Failed
-   --  cut_off_besides: Safe -> Safe_Off_Bus on Bus_Failed
-   --  still_cut_off: in Safe_Off_Bus on Bus_Failed
-   --  connected: Safe_Off_Bus -> Safe on Bus_Back
-   --  again: Safe -> Waiting when fresh(report)
+   --    there: Outward -> Homeward when report.position = 20000
+   --    home: Homeward -> Outward when report.position = 0
+   --    go: Waiting -> Travelling when fresh(report)
+   --    lost: Travelling -> Safe on Servo_Lost
+   --    cut_off_early: Waiting -> Safe_Off_Bus on Bus_Failed
+   --    cut_off: Travelling -> Safe_Off_Bus on Bus_Failed
+   --    cut_off_besides: Safe -> Safe_Off_Bus on Bus_Failed
+   --    still_cut_off: in Safe_Off_Bus on Bus_Failed
+   --    connected: Safe_Off_Bus -> Safe on Bus_Back
+   --    again: Safe -> Waiting when fresh(report)
    type Selection is
      (Initial_Entry,
       There,            --  [there] supervisor.yaml:32
