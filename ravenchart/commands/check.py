@@ -9,8 +9,8 @@ import argparse
 from collections.abc import Iterator
 
 from ravenchart.failures import OK, Refused, Unusable
-from ravenchart.gen.model.notation import shown_expression
 from ravenchart.gen.files.load import deployments_of
+from ravenchart.gen.model.notation import shown_expression
 from ravenchart.gen.model.safety import SafeRegion
 from ravenchart.gen.model.system import System
 

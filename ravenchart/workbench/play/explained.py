@@ -12,9 +12,9 @@ from ravenchart.behaviour.interpreter.observed import (
     ObservedStep,
 )
 from ravenchart.behaviour.interpreter.region import Completed, Happened, TimeOut
-from ravenchart.gen.model.notation import shown_expression, trigger
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, Value
+from ravenchart.gen.model.notation import shown_expression, trigger
 from ravenchart.gen.model.statechart import After, Completion, Every, OnEvent, When
 
 
