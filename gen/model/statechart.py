@@ -260,6 +260,18 @@ class Region:
         pseudo = self.pseudostate(name)
         return self.state(name).parent if pseudo is None else pseudo.parent
 
+    def region_of(self, vertex: str) -> RegionId:
+        """The region that a state or pseudostate stands in."""
+        found = self.pseudostate(vertex) or self.state(vertex)
+        return RegionId(found.parent, found.region)
+
+    def regions_around(self, vertex: str) -> tuple[RegionId, ...]:
+        """The regions around a vertex, innermost first; the last is the top-level region."""
+        found = [self.region_of(vertex)]
+        while found[-1].owner is not None:
+            found.append(self.region_of(found[-1].owner))
+        return tuple(found)
+
     def children(self, name: str | None, region: str | None = None) -> tuple[State, ...]:
         """The direct substates of ``name`` (None: the top states), of one of its regions or all."""
         inside = (s for s in self.states if s.parent == name)

@@ -222,13 +222,13 @@ def _listed(names: list[str]) -> str:
 
 
 def _history(tree: Tree, pseudo: Pseudostate) -> Iterator[Diagnostic]:
-    region = tree.region_of(pseudo.name)
+    region = tree.region.region_of(pseudo.name)
     if region.owner is None:
         message = f"the {shown(pseudo)} stands in a top-level region, which is never left"
         hint = "move it into the `states` of the composite state that shall be restored"
         yield error("RV-0521", pseudo.origin, message, hint=hint)
     same = (p for p in tree.region.pseudostates if p.kind is pseudo.kind)
-    first = next(p for p in same if tree.region_of(p.name) == region)
+    first = next(p for p in same if tree.region.region_of(p.name) == region)
     if first is not pseudo:
         message = f"a second {PSEUDO_WORDS[pseudo.kind]} stands beside {first.name}"
         notes = [(first.origin, "the first is here")]

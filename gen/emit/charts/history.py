@@ -37,7 +37,7 @@ def _wanted(shape: RegionShape) -> list[tuple[HistoryMemory, bool]]:
     found: dict[tuple[HistoryMemory, bool], None] = {}
     for pseudo in shape.region.pseudostates:
         if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
-            own = shape.compounds.region_of(pseudo.name)
+            own = shape.region.region_of(pseudo.name)
             deep = pseudo.kind is PseudoKind.DEEP_HISTORY
             found[(shape.memory(own), deep)] = None
             if deep:
@@ -45,10 +45,10 @@ def _wanted(shape: RegionShape) -> list[tuple[HistoryMemory, bool]]:
                 found |= {
                     (m, True): None
                     for m in below
-                    if own in shape.compounds.regions_around(m.region.owner or "")
+                    if own in shape.region.regions_around(m.region.owner or "")
                 }
     #  inner regions first: a function is declared before its use
-    around = shape.compounds.regions_around
+    around = shape.region.regions_around
     return sorted(found, key=lambda k: -len(around(k[0].region.owner or "")))
 
 
@@ -91,7 +91,7 @@ def _target(shape: RegionShape, region: RegionId, leaf: str, deep: bool) -> str 
         return None if shape.region.state(child).final else child
     if not shape.region.state(leaf).final:
         return leaf
-    return None if shape.compounds.region_of(leaf) == region else shape.region.state(leaf).parent
+    return None if shape.region.region_of(leaf) == region else shape.region.state(leaf).parent
 
 
 def _again(shape: RegionShape, region: RegionId, leaf: str, deep: bool) -> str:
@@ -103,7 +103,7 @@ def _again(shape: RegionShape, region: RegionId, leaf: str, deep: bool) -> str:
 
 def restored_configuration(shape: RegionShape, history: str) -> Expr:
     """The configuration that a history restores."""
-    restored = shape.compounds.region_of(history)
+    restored = shape.region.region_of(history)
     deep = shape.region.pseudostate(history).kind is PseudoKind.DEEP_HISTORY  # type: ignore[union-attr]
     memory = shape.memory(restored)
     leaf = call(_function(memory, deep), ref("Past"))
@@ -115,7 +115,7 @@ def restored_configuration(shape: RegionShape, history: str) -> Expr:
         here: Expr | None = None
         if region == own:
             here = leaf
-        elif region.owner and restored in shape.compounds.regions_around(region.owner):
+        elif region.owner and restored in shape.region.regions_around(region.owner):
             here = _leaf_again(shape, memory, region, deep)
         if here is not None:
             rows.append(Arg(shape.leaf_field(region), here))

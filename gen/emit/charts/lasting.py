@@ -12,6 +12,8 @@ histories remember. `Timers_After` and `Remembered` declare this, and each trans
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ravenchart.gen.emit.ada.declarations import Decl, EnumType, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import (
     Aggregate,
@@ -131,7 +133,7 @@ def declared_lasting(shape: RegionShape) -> list[Decl]:
 
 def spans_of_states(shape: RegionShape) -> dict[str, Expr]:
     """For each state the test whether a domain holds a region around it."""
-    return {s.name: _spans(shape.compounds.regions_around(s.name)) for s in shape.region.states}
+    return {s.name: _spans(shape.region.regions_around(s.name)) for s in shape.region.states}
 
 
 def _ends(shape: RegionShape) -> bool:
@@ -139,7 +141,7 @@ def _ends(shape: RegionShape) -> bool:
     return any(terminates(shape, f) for f in shape.firings)
 
 
-def _spans(regions: list[RegionId], *more: str) -> Expr:
+def _spans(regions: Sequence[RegionId], *more: str) -> Expr:
     names = [_inside(r) for r in regions] + list(more)
     return one_of(ref("D"), names)
 
@@ -156,7 +158,7 @@ def _fresh(shape: RegionShape, index: int) -> Expr:
 def _timers_after(shape: RegionShape, ends: bool) -> list[Decl]:
     rows: list[Arg] = []
     for i, timed in enumerate(shape.timers, 1):
-        around = shape.compounds.regions_around(timed.source)
+        around = shape.region.regions_around(timed.source)
         active = both(
             *conjuncts(
                 [
@@ -216,7 +218,7 @@ def _remembered(shape: RegionShape) -> list[Decl]:
 def _left(shape: RegionShape, memory: HistoryMemory) -> Expr:
     """Is the leaf of the memory's region left, when there is one?"""
     assert memory.region.owner is not None
-    around = [memory.region, *shape.compounds.regions_around(memory.region.owner)]
+    around = [memory.region, *shape.region.regions_around(memory.region.owner)]
     concurrent = shape.concurrent_around(memory.region)
     inner = [
         r
@@ -224,7 +226,7 @@ def _left(shape: RegionShape, memory: HistoryMemory) -> Expr:
         for r in s.region_ids
         if r != memory.region
         and shape.concurrent_around(r) == concurrent
-        and memory.region in shape.compounds.regions_around(s.name)
+        and memory.region in shape.region.regions_around(s.name)
     ]
     return _spans([*inner, *around])
 

@@ -155,7 +155,7 @@ class Nodes:
 
     def _around(self, vertex: str) -> DottedName:
         """The state around a vertex, unless an orthogonal region begins between them."""
-        region = self.shape.compounds.region_of(vertex)
+        region = self.shape.region.region_of(vertex)
         if region.owner is None or self.region.state(region.owner).is_orthogonal:
             return _NONE_ACTIVE
         return node(region.owner)
@@ -198,7 +198,7 @@ class Nodes:
 
     def enter(self, vertex: str) -> Assign:
         """The entry of a vertex, where its parent is active and nothing in its own region is."""
-        region = self.shape.compounds.region_of(vertex)
+        region = self.shape.region.region_of(vertex)
         others = self._idle(self.shape.orthogonal_regions(vertex))
         if region.owner is not None and self.region.state(region.owner).is_orthogonal:
             others = [equal(self._of(region.owner), node(region.owner)), *others]
@@ -237,7 +237,7 @@ class Nodes:
 
     def _of(self, vertex: str) -> DottedName:
         """The variable of the concurrent region that a vertex stands in."""
-        region = self.shape.compounds.region_of(vertex)
+        region = self.shape.region.region_of(vertex)
         return self.active(self.shape.concurrent_around(region))
 
     def stopped(self, end_of_all: str) -> list[Assign]:
@@ -260,5 +260,5 @@ class Nodes:
 
     def orthogonal_inside(self, region: RegionId) -> list[RegionId]:
         """The regions of the orthogonal states inside a region."""
-        around = self.shape.compounds.regions_around
+        around = self.shape.region.regions_around
         return [r for r in self.shape.concurrent if r.owner and region in around(r.owner)]

@@ -307,10 +307,10 @@ class RegionShape(Configurations):
         found: dict[RegionId, HistoryMemory] = {}
         for pseudo in self.region.pseudostates:
             if pseudo.kind in PASSED and pseudo.kind is not PseudoKind.CHOICE:
-                own = self.compounds.region_of(pseudo.name)
+                own = self.region.region_of(pseudo.name)
                 wanted = [own]
                 if pseudo.kind is PseudoKind.DEEP_HISTORY:
-                    around = self.compounds.regions_around
+                    around = self.region.regions_around
                     wanted += [r for r in self.concurrent if r.owner and own in around(r.owner)]
                 for region in wanted:
                     found[region] = HistoryMemory(region, ada_case(region.label))
@@ -386,7 +386,7 @@ class RegionShape(Configurations):
         whens = (t for t in firing.triggers if isinstance(t, When))
         parts += [emit_expression(scope, when.condition) for when in whens]
         if firing.kind is FiringKind.RESTORE:
-            memory = self.memory(self.compounds.region_of(firing.sources[0]))
+            memory = self.memory(self.region.region_of(firing.sources[0]))
             parts.append(ref("Self.Past", memory.known))
         parts += [emit_expression(scope, guard) for guard in firing.guards]
         if len(firing.sources) > 1:

@@ -24,7 +24,6 @@ from ravenchart.gen.model.statechart import (
     Region,
     RegionId,
     Segment,
-    State,
     Transition,
     TransitionKind,
     Trigger,
@@ -103,32 +102,19 @@ class Compounds:
 
     def __init__(self, region: Region) -> None:
         self.region = region
-        vertices: tuple[State | Pseudostate, ...] = (*region.states, *region.pseudostates)
-        self._regions = {v.name.lower(): RegionId(v.parent, v.region) for v in vertices}
 
     # --- geometry
 
-    def region_of(self, vertex: str) -> RegionId:
-        """The region that a state or pseudostate stands in."""
-        return self._regions[vertex.lower()]
-
-    def regions_around(self, vertex: str) -> list[RegionId]:
-        """The regions around a vertex, innermost first."""
-        found = [self.region_of(vertex)]
-        while found[-1].owner is not None:
-            found.append(self.region_of(found[-1].owner))
-        return found
-
     def common(self, vertices: list[str]) -> RegionId:
         """The innermost region that holds all vertices."""
-        first, *rest = (self.regions_around(v) for v in vertices)
+        first, *rest = (self.region.regions_around(v) for v in vertices)
         return next(r for r in first if all(r in others for others in rest))
 
     def below(self, region: RegionId, vertex: str) -> list[str]:
         """``vertex`` and the states around it inside ``region``, outermost first."""
         path = [vertex]
-        while self.region_of(path[-1]) != region:
-            owner = self.region_of(path[-1]).owner
+        while self.region.region_of(path[-1]) != region:
+            owner = self.region.region_of(path[-1]).owner
             assert owner is not None
             path.append(owner)
         return path[::-1]
@@ -138,7 +124,7 @@ class Compounds:
         return tuple(
             p.name
             for p in self.region.pseudostates
-            if (p.kind in PASSED and self.region_of(p.name) == region)
+            if (p.kind in PASSED and self.region.region_of(p.name) == region)
             or (p.kind is PseudoKind.TERMINATE and region == TOP)
         )
 
@@ -169,7 +155,7 @@ class Compounds:
     def _nested(
         self, region: RegionId, targets: list[str], effects: dict[str, Effect]
     ) -> tuple[EntryStep, ...]:
-        here = [t for t in targets if region in self.regions_around(t)]
+        here = [t for t in targets if region in self.region.regions_around(t)]
         if not here:
             return self.default(region)
         if len(here) > 1:
@@ -229,7 +215,7 @@ class Compounds:
                     (name,),
                     (Segment(),),
                     (),
-                    self.region_of(name),
+                    self.region.region_of(name),
                     goal=name,
                     origins=(pseudo.origin,),
                     vertex=name,
@@ -239,7 +225,7 @@ class Compounds:
         for segment in out:
             lines += self._paths((segment,), region)
         if kind is not PseudoKind.CHOICE and not out:
-            domain = self.region_of(name)
+            domain = self.region.region_of(name)
             entries = self.default(domain)
             lines.append(
                 Firing(
@@ -335,7 +321,7 @@ class Compounds:
 
     def _domain(self, main: Transition, sources: tuple[str, ...], targets: list[str]) -> RegionId:
         if main.kind is TransitionKind.LOCAL:
-            return next(r for r in self.regions_around(targets[0]) if r.owner == main.source)
+            return next(r for r in self.region.regions_around(targets[0]) if r.owner == main.source)
         return self.common([*sources, *targets])
 
     # --- conflicts
@@ -344,7 +330,7 @@ class Compounds:
         """The orthogonal states that a line leaves from inside, innermost first."""
         if firing.domain is None:
             return ()
-        around = self.regions_around(firing.sources[0])
+        around = self.region.regions_around(firing.sources[0])
         if firing.domain not in around:
             return ()
         owners = [r.owner for r in around[: around.index(firing.domain)]]

@@ -106,14 +106,14 @@ class Reach:
 
     def _restored(self, history: str) -> set[str]:
         """The states that a history may enter, beside its default transition."""
-        region = self.tree.region_of(history)
+        region = self.tree.region.region_of(history)
         found: set[str] = set()
         if not self.tree.outgoing.get(history):
             found |= self._entered(region, ())
         below = [s for s in self.tree.states if s in self.found and self.tree.child(region, s)]
         if self.tree.kind(history) is PseudoKind.HISTORY:
             for state in below:
-                if self.tree.region_of(state) == region:
+                if self.tree.region.region_of(state) == region:
                     found |= self._entered(region, (state,))
             return found
         for state in below:

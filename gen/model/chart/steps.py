@@ -168,7 +168,7 @@ class Steps:
             case PseudoKind.CHOICE:
                 return self._behind[target]
             case PseudoKind.HISTORY | PseudoKind.DEEP_HISTORY:
-                region = self.tree.region_of(target)
+                region = self.tree.region.region_of(target)
                 default = [self.entering(region, ())]
                 for segment in self.tree.outgoing.get(target, ()):
                     effect = tally(segment.effect)

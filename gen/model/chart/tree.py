@@ -61,17 +61,12 @@ class Tree:
         """Where it is declared."""
         return (self.pseudostates.get(vertex) or self.states[vertex]).origin
 
-    def region_of(self, vertex: str) -> RegionId:
-        """The region that a vertex stands in."""
-        found = self.pseudostates.get(vertex) or self.states[vertex]
-        return RegionId(found.parent, found.region)
-
     @cached_property
     def content(self) -> Mapping[RegionId, tuple[State, ...]]:
         """The states that stand directly in each region, in model order."""
         found: dict[RegionId, list[State]] = {}
         for state in self.region.states:
-            found.setdefault(self.region_of(state.name), []).append(state)
+            found.setdefault(self.region.region_of(state.name), []).append(state)
         return {region: tuple(states) for region, states in found.items()}
 
     def initial(self, region: RegionId) -> Initial:
@@ -86,22 +81,15 @@ class Tree:
 
     # --- what is around
 
-    def regions_around(self, vertex: str) -> tuple[RegionId, ...]:
-        """The regions around a vertex, innermost first; the last is the top-level region."""
-        found = [self.region_of(vertex)]
-        while found[-1].owner is not None:
-            found.append(self.region_of(found[-1].owner))
-        return tuple(found)
-
     def above(self, vertex: str) -> tuple[str, ...]:
         """The states around a vertex, innermost first."""
-        return tuple(r.owner for r in self.regions_around(vertex) if r.owner is not None)
+        return tuple(r.owner for r in self.region.regions_around(vertex) if r.owner is not None)
 
     def child(self, region: RegionId, vertex: str) -> str | None:
         """The vertex directly in a region that is the given one or holds it; None for neither."""
         at: str | None = vertex
         while at is not None:
-            here = self.region_of(at)
+            here = self.region.region_of(at)
             if here == region:
                 return at
             at = here.owner
@@ -140,8 +128,8 @@ class Tree:
 
     def domain(self, source: str, target: str) -> RegionId:
         """The innermost region that holds both ends: what is left and entered is inside it."""
-        around = self.regions_around(target)
-        return next(region for region in self.regions_around(source) if region in around)
+        around = self.region.regions_around(target)
+        return next(region for region in self.region.regions_around(source) if region in around)
 
     def ways(self, transition: Transition) -> Iterator[Way]:
         """The compound transitions that begin with a transition: one for each path of junctions."""
@@ -216,7 +204,7 @@ class Way:
         if self.tree.kind(self.target) is PseudoKind.FORK:
             end = self.tree.divide(self.targets) or end
         if first.kind is TransitionKind.LOCAL:
-            return next(r for r in self.tree.regions_around(end) if r.owner == first.source)
+            return next(r for r in self.tree.region.regions_around(end) if r.owner == first.source)
         return self.tree.domain(self.source, end)
 
     @cached_property
