@@ -55,11 +55,10 @@ def execute(options: argparse.Namespace) -> int:
                 f"{VARIABLE} gave it, or name its bus with --interface and --channel"
             )
     with ExitStack() as stack:
-        seen = _Seen(
-            checked,
-            stack.enter_context(monitoring.watching(checked, files)),
-            [BusWatch(checked.analysis, interface)] if interface else [],
-        )
+        controllers = stack.enter_context(monitoring.watching(checked, files))
+        ring = None if interface or options.file else monitoring.bus_of_run(checked)
+        end = interface or ring
+        seen = _Seen(checked, controllers, [BusWatch(checked.analysis, end)] if end else [])
         for bus in seen.buses:
             stack.callback(bus.close)
         if options.once:
@@ -199,7 +198,7 @@ def _status(options: argparse.Namespace, seen: _Seen) -> int:
     wrong += [
         f"nothing comes from {bus.interface} any more: {bus.gone}"
         for bus in seen.on_buses
-        if bus.gone is not None
+        if bus.gone is not None and not bus.ended
     ]
     for text in wrong:
         say(options.answer, f"ravenchart: error: {text}")

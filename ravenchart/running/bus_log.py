@@ -1,7 +1,10 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Logs of `ravenchart bus` and `ravenchart run`: what is on the bus, in a format of python-can."""
+"""Logs of `ravenchart bus` and `ravenchart run`: what is on the bus, in a format of python-can.
+
+A run also shows its frames to those who watch its bus (`bus_ring`).
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import can
@@ -18,7 +21,10 @@ from can.io.logger import MESSAGE_WRITERS
 
 from ravenchart.failures import Unusable
 from ravenchart.hw_can.bench.bus_records import RECORD_BYTES, can_message, decode, greeting_of
-from ravenchart.hw_can.bench.peer import OnFrame, unrecorded
+from ravenchart.hw_can.bench.peer import OnFrame
+
+from . import bus_ring
+from .bus_ring import BusRing
 
 CHUNK = 512 * RECORD_BYTES
 
@@ -29,15 +35,18 @@ def suffixes() -> str:
 
 
 @contextmanager
-def written(path: Path) -> Iterator[int]:
+def written(path: Path | None, beside: Path | None = None) -> Iterator[int]:
     """A descriptor for the server's records, which go to the log; it is whole after the block.
 
-    The one who uses it must have closed it by then. Raises OSError or Unusable where the
-    log cannot be written.
+    They also go to a ring ``beside`` a program. The one who uses the descriptor must have closed it
+    by then. Raises OSError or Unusable where the log cannot be written.
     """
-    reading, writing = os.pipe()
-    with open(reading, "rb", buffering=CHUNK) as source, _opened(path) as logger:
-        copying = threading.Thread(target=_copy, args=(source.read, logger))
+    with ExitStack() as stack:
+        logger = None if path is None else stack.enter_context(_opened(path))
+        ring = stack.enter_context(bus_ring.shown(beside))
+        reading, writing = os.pipe()
+        source = stack.enter_context(open(reading, "rb", buffering=CHUNK))
+        copying = threading.Thread(target=_copy, args=(source.read, logger, ring))
         copying.start()
         try:
             yield writing
@@ -47,17 +56,22 @@ def written(path: Path) -> Iterator[int]:
 
 
 @contextmanager
-def recorded(path: Path | None, bus: str) -> Iterator[OnFrame]:
-    """A function that adds the frames of a bus to the log, if there is one; raises as `written`."""
-    if path is None:
-        yield unrecorded
-        return
+def recorded(path: Path | None, bus: str, beside: Path | None = None) -> Iterator[OnFrame]:
+    """A function that adds the frames of a bus to the log, if there is one; raises as `written`.
 
-    def record(frame: can.Message) -> None:
-        frame.channel = bus
-        logger.on_message_received(frame)
+    It also adds them to a ring ``beside`` a program.
+    """
+    with ExitStack() as stack:
+        logger = None if path is None else stack.enter_context(_opened(path))
+        ring = stack.enter_context(bus_ring.shown(beside))
 
-    with _opened(path) as logger:
+        def record(frame: can.Message) -> None:
+            if ring is not None:
+                ring.take(frame)
+            if logger is not None:
+                frame.channel = bus
+                logger.on_message_received(frame)
+
         yield record
 
 
@@ -70,8 +84,8 @@ def _opened(path: Path) -> MessageWriter:
         raise Unusable(f"{path} cannot be written: {fault}") from None
 
 
-def _copy(read: Callable[[int], bytes], logger: can.Listener) -> None:
-    """Each record that is read, as a message of the log.
+def _copy(read: Callable[[int], bytes], logger: can.Listener | None, ring: BusRing | None) -> None:
+    """Each record that is read, as a message of the log and in the ring.
 
     A log that cannot be written any more ends, and the bus does not wait for it.
     """
@@ -79,9 +93,12 @@ def _copy(read: Callable[[int], bytes], logger: can.Listener) -> None:
     if len(octets) < RECORD_BYTES:
         return
     greeting = greeting_of(decode(octets))
-    broken = False
+    if ring is not None:
+        ring.begin(greeting.start)
     while len(octets := read(RECORD_BYTES)) == RECORD_BYTES:
-        if broken:
+        if ring is not None:
+            ring.put(octets)
+        if logger is None:
             continue
         message = can_message(decode(octets), greeting.start)
         message.channel = greeting.name
@@ -89,4 +106,4 @@ def _copy(read: Callable[[int], bytes], logger: can.Listener) -> None:
             logger.on_message_received(message)
         except Exception as fault:  # a full disk, for example
             print(f"ravenchart: error: the log ends: {fault}", file=sys.stderr, flush=True)
-            broken = True
+            logger = None

@@ -28,7 +28,9 @@ def tables(bus: WatchedBus) -> RenderableType:
     head.append(f", by the analysis {bound}; frames {bus.frames}")
     for word, number in _faults(bus):
         head.append(f", {word} {number}", style="bold red" if word != "unknown" else "")
-    if bus.gone is not None:
+    if bus.ended:
+        head.append(f"\n{bus.gone}")
+    elif bus.gone is not None:
         head.append(f"\nGONE: {bus.gone}", style="bold red")
     return Group(head, _messages(bus))
 
@@ -72,7 +74,12 @@ def _exact(share: float) -> Fraction:
 
 
 def _faults(bus: WatchedBus) -> list[tuple[str, int]]:
-    counts = {"unknown": bus.unknown, "malformed": bus.malformed, "error frames": bus.errors}
+    counts = {
+        "unknown": bus.unknown,
+        "malformed": bus.malformed,
+        "error frames": bus.errors,
+        "missed": bus.missed,
+    }
     return [(word, number) for word, number in counts.items() if number]
 
 

@@ -3,8 +3,9 @@
 
 """A bus while controllers use it: its load, and its messages with their last values.
 
-The watch sends nothing: it is one more node, which only receives. An adapter that takes part
-in the bus still acknowledges frames, unless its driver is set to listen only.
+The watch sends nothing: at an interface it is one more node, which only receives. An adapter that
+takes part in the bus still acknowledges frames, unless its driver is set to listen only. On the bus
+of a run it is no node at all.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from collections import deque
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
 
 import can
 
@@ -26,6 +29,7 @@ from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.hw_can.bench.interfaces import BusEnd, fault_text, opened_bus
 from ravenchart.hw_can.bench.peer import BenchError, MalformedFrameError, Value
 
+from .bus_ring import RUN_ENDED, RingReader, RunEndedError
 from .vocabulary import BusVocabulary
 
 WINDOW = 1.0
@@ -36,6 +40,9 @@ SECOND = 10**9
 
 WAIT = 0.05
 """Seconds after which the thread sees that it is to end."""
+
+OF_A_RUN = "bus of a run"
+"""In the place of an interface."""
 
 PATIENCE = 1.0
 """Seconds after which a driver that does not return is left alone."""
@@ -71,7 +78,7 @@ class WatchedBus(Described):
     bus: str
     """Its name in the model."""
     interface: str
-    """Interface and channel of python-can."""
+    """Interface and channel of python-can; `bus of a run` for that of `run` or `shell`."""
     now: int
     """The time, in ns."""
     load: float
@@ -87,10 +94,14 @@ class WatchedBus(Described):
     """Frames whose data are no value of their message."""
     errors: int
     """How many error frames the interface has reported."""
+    missed: int
+    """How many frames of the bus of a run were gone before the watch read them."""
     messages: list[WatchedMessage]
     """In the order of the model."""
     gone: str | None
-    """Why nothing comes any more; null while the interface works."""
+    """Why nothing comes any more; null while the interface works, and while the run goes on."""
+    ended: bool
+    """Whether nothing comes because the run has ended."""
 
 
 @dataclass(slots=True)
@@ -105,16 +116,26 @@ class _Seen:
     fields: Mapping[str, Value] = field(default_factory=dict)
 
 
+class _Frames(Protocol):
+    """Where frames come from."""
+
+    def recv(self, timeout: float) -> can.Message | None:
+        """The next frame; None where none comes in that time, in s."""
+
+    def shutdown(self) -> None:
+        """Take no more."""
+
+
 class BusWatch:
     """Takes the frames of a bus in a thread of its own; anybody may look."""
 
-    def __init__(self, analysis: Analysis, interface: BusEnd) -> None:
-        """The bus of the model, at that interface; Unusable where there is none."""
+    def __init__(self, analysis: Analysis, end: BusEnd | Path) -> None:
+        """The bus of the model, at that interface or in the ring of a run; Unusable without it."""
         self._words = BusVocabulary.of(analysis.system)
         bus = self._words.bus.name
         known = [m for m in analysis.system.frames if m.bus == bus]
         self._known = {(m.identifier, m.extended): m for m in known}
-        self._interface = interface
+        self._name = str(end) if isinstance(end, BusEnd) else OF_A_RUN
         self._bound = most_in_a_second(analysis, self._words.bus)
         self._seen = {m.name: _Seen() for m in known}
         self._frames = self._unknown = self._malformed = self._errors = 0
@@ -122,10 +143,16 @@ class BusWatch:
         self._taken: deque[tuple[float, int]] = deque()
         self._lock = threading.Lock()
         self._ends = threading.Event()
+        self._ring: RingReader | None = None
         try:
-            self._can = opened_bus(interface)
+            if isinstance(end, BusEnd):
+                self._source: _Frames = opened_bus(end)
+            else:
+                self._source = self._ring = RingReader(end)
         except BenchError as fault:
             raise Unusable(str(fault)) from None
+        except OSError as fault:
+            raise Unusable(f"{end}: {fault.strerror}") from None
         self._begin = time.monotonic()
         self._thread = threading.Thread(target=self._receive, daemon=True)
         self._thread.start()
@@ -135,7 +162,7 @@ class BusWatch:
         self._ends.set()
         self._thread.join(PATIENCE)
         with suppress(can.CanError, OSError):
-            self._can.shutdown()
+            self._source.shutdown()
 
     def look(self) -> WatchedBus:
         """The bus as it is now."""
@@ -144,7 +171,7 @@ class BusWatch:
             self._forget(now)
             return WatchedBus(
                 bus=self._words.bus.name,
-                interface=str(self._interface),
+                interface=self._name,
                 now=self._since(now),
                 load=sum(length for _, length in self._taken) / (WINDOW * SECOND),
                 bound=self._bound,
@@ -152,8 +179,10 @@ class BusWatch:
                 unknown=self._unknown,
                 malformed=self._malformed,
                 errors=self._errors,
+                missed=0 if self._ring is None else self._ring.missed,
                 messages=[self._message(m, self._seen[m.name]) for m in self._known.values()],
                 gone=self._gone,
+                ended=self._gone == RUN_ENDED,
             )
 
     def _message(self, message: Message, seen: _Seen) -> WatchedMessage:
@@ -180,10 +209,13 @@ class BusWatch:
     def _receive(self) -> None:
         try:
             while not self._ends.is_set():
-                frame = self._can.recv(timeout=WAIT)
+                frame = self._source.recv(timeout=WAIT)
                 if frame is not None:
                     with self._lock:
                         self._take(frame, time.monotonic())
+        except RunEndedError:
+            with self._lock:
+                self._gone = RUN_ENDED
         except Exception as fault:  # drivers raise what they like
             with self._lock:
                 self._gone = fault_text(fault)

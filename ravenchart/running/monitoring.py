@@ -14,7 +14,7 @@ from ravenchart.building import programs
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused, Unusable
 
-from .snapshots import snapshot_files
+from . import bus_ring, held_files, snapshots
 from .watched import WatchedController, WatchedProcess
 from .watched_boards import WatchedBoard, line_of
 
@@ -35,7 +35,8 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
     files: list[NodeFile] = []
     for program in made:
         main = f"{checked.stem}_main"
-        running = snapshot_files([home / program.folder for home in homes], main)
+        folders = [home / program.folder for home in homes]
+        running = held_files.held_files(folders, main, snapshots.MARK)
         if running:
             files.append((program, str(running[0])))
         if running[1:]:
@@ -46,6 +47,15 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
         if files and program.node not in watched:
             note(f"warning: no controller of the node {program.node} runs")
     return files
+
+
+def bus_of_run(checked: Checked) -> Path | None:
+    """The ring of the bus on which `run` or `shell` lets controllers run now; the newest one."""
+    main = f"{checked.stem}_main"
+    homes = programs.homes_of(checked.path)
+    made = programs.programs_of(checked)
+    found = bus_ring.rings([home / one.folder for one in made for home in homes], main)
+    return found[0] if found else None
 
 
 def none_runs(checked: Checked) -> str:

@@ -19,7 +19,7 @@ from typing import IO
 
 from ravenchart.tools import children
 
-from . import snapshots
+from . import held_files, snapshots
 
 ERROR = "error: "
 """How a controller begins a line about a failure of its own."""
@@ -91,7 +91,7 @@ class ControllerProcess:
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
-        self.snapshots = None if given else snapshots.new_file(executable)
+        self.snapshots = None if given else held_files.new_file(executable, snapshots.MARK)
         """The file that a monitor finds, where this one has made it."""
         if self.snapshots is not None:
             told[snapshots.VARIABLE] = str(self.snapshots)

@@ -190,7 +190,7 @@ def run_controller(
             ended=lambda: process.ask_to_end(grace),
         )
 
-    with bus_log.recorded(log, dbc.stem) as record:
+    with bus_log.recorded(log, dbc.stem, executable) as record:
         return _run(executable, trace_json, out_dir, plan.title, plan, play, analysis)
 
 
@@ -425,7 +425,11 @@ def run_nodes(
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
     words = bus_words(analysis, controllers, plan)
-    with separate_cores(), server.running("port=0", *words, log=log) as (_, channel):
+    beside = controllers[0].executable
+    with (
+        separate_cores(),
+        server.running("port=0", *words, log=log, beside=beside) as (_, channel),
+    ):
         running: list[ControllerProcess] = []
         try:
             for process in joining(controllers, traces, channel, cores):

@@ -3,18 +3,14 @@
 
 """The snapshots of a running controller: the file that it writes them to, found and read.
 
-Ravenchart.Hosts.Snapshots (spark_runtime/native) says what the file holds. The controller holds a
-lock on it for as long as it lives, so a file without a lock is of one that has ended.
+Ravenchart.Hosts.Snapshots (spark_runtime/native) says what the file holds. The controller holds
+it as `held_files` says.
 """
 
 from __future__ import annotations
 
-import fcntl
 import os
-import struct
-import tempfile
 import time
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +24,8 @@ from ravenchart.analysis.system.observed import (
     read_trace,
     trace_record,
 )
+
+from . import held_files
 
 VARIABLE = "RAVENCHART_MONITOR"
 """The environment variable that names the file to a controller."""
@@ -51,12 +49,6 @@ TRIES = 20
 
 PAUSE = 0.002
 """Seconds between two tries."""
-
-ABANDONED = 60.0
-"""A file without a lock for so long, in s, is left over."""
-
-_LOCK = "hhqqi"
-"""`struct flock` of Linux on 64 bits: type, whence, start, length, process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,13 +96,8 @@ class SnapshotFile:
                 self._file = file
 
     def owner(self) -> int | None:
-        """The number of the process that writes it; None where there is none any more.
-
-        It is 0 for a process that this one cannot see, as in another container.
-        """
-        asked = struct.pack(_LOCK, fcntl.F_RDLCK, os.SEEK_SET, 0, 0, 0)
-        kind, _, _, _, process = struct.unpack(_LOCK, fcntl.fcntl(self._file, fcntl.F_GETLK, asked))
-        return None if kind == fcntl.F_UNLCK else int(process)
+        """The number of the process that writes it, as of `held_files.holder`."""
+        return held_files.holder(self._file)
 
     def text(self) -> str | None:
         """The last whole snapshot; None where there is none yet."""
@@ -154,40 +141,3 @@ def parsed_snapshot(text: str, trace_map: TraceMap, file: str) -> Snapshot:
             raise TraceError(f"{file}:{number}: error: {fault}") from None
     seen = read_trace(report, trace_map, file)
     return Snapshot(int(lines[-1].split()[1]), seen, tuple(tallies))
-
-
-def new_file(executable: Path) -> Path | None:
-    """A new file for the snapshots of a program, beside it; None where it cannot be there.
-
-    Files there that a killed run has left over are deleted.
-    """
-    folder, prefix = executable.absolute().parent, f"{executable.name}{MARK}"
-    for path in folder.glob(f"{prefix}*"):
-        with suppress(OSError):
-            if time.time() - path.stat().st_mtime > ABANDONED and not is_written(path):
-                path.unlink()
-    try:
-        file, name = tempfile.mkstemp(prefix=prefix, dir=folder)
-    except OSError:
-        return None
-    os.close(file)
-    return Path(name)
-
-
-def is_written(path: Path) -> bool:
-    """Whether a controller writes it now. OSError where it cannot be read."""
-    file = SnapshotFile(path)
-    try:
-        return file.owner() is not None
-    finally:
-        file.close()
-
-
-def snapshot_files(folders: Sequence[Path], program: str) -> list[Path]:
-    """The files of controllers that run now, of a program in any mode; the newest first."""
-    found: list[tuple[float, Path]] = []
-    for path in (p for folder in folders for p in folder.glob(f"*/{program}{MARK}*")):
-        with suppress(OSError):
-            if is_written(path):
-                found.append((path.stat().st_mtime, path))
-    return [path for _, path in sorted(found, reverse=True)]

@@ -58,14 +58,16 @@ def started(
         core = stack.enter_context(separate_cores())
         if joins_a_server(analysis.system, len(controllers)):
             words = bus_words(analysis, controllers, None)
-            _, channel = stack.enter_context(server.running("port=0", *words, log=log))
+            bus = server.running("port=0", *words, log=log, beside=controllers[0].executable)
+            _, channel = stack.enter_context(bus)
             stack.callback(_stop, processes, ended, grace)
             for process in joining(controllers, traces, channel, cores):
                 processes.append(process)
                 process.wait_until_joined()
             peer = Peer.join(channel, vocabulary.codec)
         else:
-            record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name))
+            beside = controllers[0].executable
+            record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name, beside))
             stack.callback(_stop, processes, ended, grace)
             processes.append(ControllerProcess(controllers[0].executable, traces[0], core))
             peer = Peer.connect(processes[0].wait_for_port(), vocabulary.codec, record)

@@ -16,6 +16,7 @@ from typing import Any
 from ravenchart.building import checking
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Failure, said_of
+from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.running import monitoring
 from ravenchart.running.attaching import interface_of
 from ravenchart.running.bus_watch import BusWatch
@@ -112,12 +113,14 @@ class LiveView:
         """Watch the bus, or watch it again where it was gone; say why not where that cannot be."""
         works = self._bus is not None and self._bus.look().gone is None
         now = time.monotonic()
-        if self._named is None or self._checked is None or works or now < self._next_join:
+        if self._checked is None or works or now < self._next_join:
             return
         self._next_join = now + PAUSE
         try:
-            interface = interface_of(self._checked.system, *self._named)
-            watch = BusWatch(self._checked.analysis, interface)
+            end = self._end(self._checked)
+            if end is None:
+                return
+            watch = BusWatch(self._checked.analysis, end)
         except Failure as problem:
             if self._bus is None:
                 self._bus_text = _without_prefix(problem)
@@ -125,6 +128,13 @@ class LiveView:
         self._on_bus.close()
         self._bus, self._bus_text = watch, ""
         self._on_bus.callback(watch.close)
+
+    def _end(self, checked: Checked) -> BusEnd | Path | None:
+        """That of the bus that was named; else the ring of the run that is watched, if any."""
+        if self._named is not None:
+            return interface_of(checked.system, *self._named)
+        runs = any(one.node.process is not None for one in self._watched)
+        return monitoring.bus_of_run(checked) if runs and not self._given else None
 
     def _found(self, digest: str) -> str:
         """As `_attach`, or why that fails.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.bus_server import BusServer
 from tests.support.far_end import FarEnd
+from tests.support.processes import LAUNCHER
 from tests.support.recorded import FOLDER
 from tests.support.snapshot_files import held, snapshot
 from tests.support.workbench import running
@@ -137,6 +139,32 @@ def test_the_live_tab_says_what_it_did_not_look_at(tmp_path: Path) -> None:
             "last 30 s: one value of each snapshot"
         )
         assert serious(pane.page) == []
+        pane.closed(bench.address)
+
+
+def test_the_bus_of_a_shell_is_shown_until_it_ends_and_then_that_of_the_next_one() -> None:
+    with running(PUMP) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        bus = pane.page.get_by_role("region", name="Bus ward")
+        for given in ("Clear", "Air"):
+            shell = subprocess.Popen(
+                [LAUNCHER, "shell", PUMP], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                text=True,
+            )  # fmt: skip
+            try:
+                expect(bus.locator("h3")).to_contain_text("ward: bus of a run, ", timeout=60_000)
+                expect(bus.get_by_role("row", name="motor 0x")).to_contain_text("value 0 ul")
+                assert shell.stdin is not None
+                shell.stdin.write(f"send line value={given}\n")
+                shell.stdin.flush()
+                line = bus.get_by_role("row", name="line 0x")
+                expect(line).to_contain_text(f"value {given}", timeout=30_000)
+                assert serious(pane.page) == []
+            finally:
+                shell.communicate("quit\n")
+            assert shell.returncode == 0
+            expect(bus.locator("h3")).to_contain_text("the run has ended")
         pane.closed(bench.address)
 
 

@@ -20,8 +20,9 @@ import pytest
 from ravenchart.analysis.system.observed import Observation, read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
+from ravenchart.running.held_files import is_held
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.snapshots import VARIABLE, SnapshotFile, is_written, parsed_snapshot
+from ravenchart.running.snapshots import VARIABLE, SnapshotFile, parsed_snapshot
 from tests.support.ada_programs import built
 from tests.support.examples import becomes
 from tests.support.faults import shows
@@ -231,12 +232,17 @@ def test_a_terminal_is_drawn_over_and_given_back(watched: Watched, more: dict[st
 
 @pytest.mark.live
 @pytest.mark.slow
-def test_nodes_that_run_has_started_are_found(tmp_path: Path) -> None:
+def test_nodes_that_run_has_started_are_found_and_so_is_their_bus(tmp_path: Path) -> None:
     run = Marked([LAUNCHER, "run", TWO_NODES, "--seconds", "600", "--report", tmp_path])
     try:
         found = _of_both_nodes(run)
-        assert len({one["node"] for one in found}) == 2
-        assert all(one["processors"] and one["process"] for one in found)
+        assert len({one["node"] for one in found["nodes"]}) == 2
+        assert all(one["processors"] and one["process"] for one in found["nodes"])
+        (bus,) = found["buses"]
+        assert (bus["interface"], bus["gone"], bus["ended"]) == ("bus of a run", None, False)
+        assert 0 < bus["load"] <= bus["bound"]
+        assert sum(one["frames"] for one in bus["messages"]) == bus["frames"] > 10
+        assert bus["missed"] == bus["unknown"] == bus["malformed"] == 0
         run.process.send_signal(signal.SIGINT)
         run.process.wait(LIMIT)
         assert run.gone(LIMIT)
@@ -248,20 +254,21 @@ def test_nodes_that_run_has_started_are_found(tmp_path: Path) -> None:
     assert "no controller of" in done.stderr
 
 
-def _of_both_nodes(run: Marked) -> list[dict[str, Any]]:
-    """Both nodes, once both run."""
-    nodes: list[dict[str, Any]] = []
+def _of_both_nodes(run: Marked) -> dict[str, Any]:
+    """The result of a monitor, once both nodes run."""
+    result: dict[str, Any] = {"nodes": [], "buses": []}
 
     def both() -> bool:
         assert run.process.poll() is None
         done = _once()
-        nodes[:] = json.loads(done.stdout)["result"]["nodes"] if done.returncode == 0 else []
-        return len(nodes) == 2
+        if done.returncode == 0:
+            result.update(json.loads(done.stdout)["result"])
+        return len(result["nodes"]) == 2
 
     for _ in range(5):
         if becomes(both):
             break
-    return nodes
+    return result
 
 
 def _once() -> subprocess.CompletedProcess[str]:
@@ -300,7 +307,7 @@ def test_a_hand_written_program_has_snapshots_too(host: Host, tmp_path: Path) ->
     assert text is not None
     lines = text.splitlines()
     assert len(text) == file.stat().st_size
-    assert not is_written(file)
+    assert not is_held(file)
     assert "C TRANSITION 17 2000 1000 -2000" in lines
     listed = [line for line in lines if line.startswith("T ")]
     assert listed == [f"T 1000 Transition 17 {-n}" for n in range(1969, 2001)]

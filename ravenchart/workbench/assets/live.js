@@ -57,9 +57,9 @@ export function Live() {
 
 /** A bus: its load beside that of the analysis, and its messages with their last values. */
 function Bus({ of }) {
-  const faults = [["unknown", of.unknown], ["malformed", of.malformed], ["error frames", of.errors]].filter(([, count]) => count);
+  const faults = [["unknown", of.unknown], ["malformed", of.malformed], ["error frames", of.errors], ["missed", of.missed]].filter(([, count]) => count);
   return html`<section class="live" aria-label="Bus ${of.bus}">
-    <h3>${of.bus}: ${of.interface}, ${seconds(of.now)} s ${of.gone && html`<span class="error">gone: ${of.gone}</span>`}</h3>
+    <h3>${of.bus}: ${of.interface}, ${seconds(of.now)} s ${of.gone && html`<span class=${of.ended ? "" : "error"}>${of.ended ? "" : "gone: "}${of.gone}</span>`}</h3>
     <p class=${of.bound !== null && of.load > of.bound ? "error" : ""}>load of the last second: at most ${percent(of.load)}; in the analysis: ${of.bound === null ? "-" : percent(of.bound)};
       frames: ${of.frames}${faults.map(([what, count]) => `, ${what} ${count}`).join("")}</p>
     <${Table} names=${["message", "identifier", "frames>", "last>", "shortest>", "period>", "last values"]} rows=${of.messages.map((one) => [

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from pathlib import Path
 
 import pytest
@@ -131,23 +130,6 @@ def test_every_key_of_scenarios_and_events_is_on_the_page() -> None:
     keys |= set(re.findall(r"\w+", re.sub("or, at the end", "", FORMS)))
     missing = {key for key in keys if f"`{key}`" not in PAGE}
     assert missing == set()
-
-
-@pytest.mark.slow
-def test_the_examples_of_the_page_are_valid(tmp_path: Path) -> None:
-    plans = re.findall(r"```yaml\n(scenario:.*?)```", PAGE, re.S)
-    events = re.findall(r"```yaml\n(- \{at.*?)```", PAGE, re.S)
-    assert len(plans) == 2 and len(events) == 2
-    for plan, folder in zip(plans, (ROBOT, TWO_NODES), strict=True):
-        system = checking.check(folder / "model.yaml", deadlines=False).system
-        assert scenarios.problems(parse_scenario(plan), system) == []
-    of_models = [("pump", []), ("two_nodes", ["--alone", "supervisor"])]
-    for text, (name, more) in zip(events, of_models, strict=True):
-        shutil.copytree(ROOT / "examples" / name, tmp_path / name)
-        (tmp_path / "events.yaml").write_text(text)
-        call = ["simulate", str(tmp_path / name / "model.yaml"), "--events"]
-        call += [str(tmp_path / "events.yaml"), "--interpreter", "--json", *more]
-        assert main(call) == 0
 
 
 def test_the_codes_of_the_page_are_those_of_scenarios_and_events() -> None:

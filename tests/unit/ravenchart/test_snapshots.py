@@ -5,14 +5,11 @@
 
 from __future__ import annotations
 
-import os
-import time
 from pathlib import Path
 
 import pytest
 
 from ravenchart.analysis.system.observed import TraceError
-from ravenchart.running import snapshots
 from ravenchart.running.snapshots import SnapshotFile, parsed_snapshot
 from tests.support.snapshot_files import held, number, processors, snapshot, trace_map
 
@@ -81,32 +78,3 @@ def test_the_owner_is_the_process_that_holds_the_lock(path: Path) -> None:
     with held(path) as process:
         assert file.owner() == process
     assert file.owner() is None
-
-
-def test_only_files_that_are_written_are_found_the_newest_first(tmp_path: Path) -> None:
-    mode = tmp_path / "checks"
-    mode.mkdir()
-    first, second, left = (mode / f"pump_main.live-{n}" for n in range(3))
-    for age, one in ((9, first), (3, second), (1, left)):
-        one.write_text("")
-        os.utime(one, (time.time() - age,) * 2)
-    with held(first), held(second):
-        assert snapshots.snapshot_files([tmp_path], "pump_main") == [second, first]
-        assert snapshots.snapshot_files([tmp_path], "other_main") == []
-
-
-def test_a_new_file_takes_those_away_that_a_killed_run_has_left(tmp_path: Path) -> None:
-    program = tmp_path / "pump_main"
-    old, fresh, used = (tmp_path / f"pump_main.live-{n}" for n in ("old", "fresh", "used"))
-    for one in (old, fresh, used):
-        one.write_text("")
-    for one in (old, used):
-        os.utime(one, (time.time() - 2 * snapshots.ABANDONED,) * 2)
-    with held(used):
-        made = snapshots.new_file(program)
-    assert made is not None
-    assert sorted(tmp_path.iterdir()) == sorted((fresh, made, used))
-
-
-def test_without_a_folder_there_is_no_new_file(tmp_path: Path) -> None:
-    assert snapshots.new_file(tmp_path / "none" / "pump_main") is None
