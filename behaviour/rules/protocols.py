@@ -171,8 +171,9 @@ def _misused(client: Client, found: OpenInvariant) -> Diagnostic:
         (protocol.origin, f"{protocol.name} allows {command} in: {', '.join(states)}"),
         (protocol.origin, f"{client.instances[0]} calls {client.provider}"),
     ]
-    if len(client.callers[0].sends) > 1:
-        order = ", ".join(client.in_order)
+    called = [one for one in client.in_order if one in client.callers[0].sends]
+    if len(called) > 1:
+        order = ", ".join(called)
         notes.append((found.invariant.origin, f"the calls of one step are made in order: {order}"))
     if found.violation is not None:
         message = f"{name} calls {command} where {protocol.name} does not allow it: "

@@ -87,6 +87,21 @@ def test_calls_of_one_step_are_made_in_the_order_of_the_interface() -> None:
     assert judged(door(entry)) == []
 
 
+def test_the_order_is_told_of_the_commands_that_the_client_calls() -> None:
+    order = "the calls of one step are made in order: "
+    exits = "{call: Move, with: 0}, {call: Disable}, "
+    stop = ("stop: {from: Opened, on: Stop, effect: [{call: Move, with: 50}]}",
+            "stop: {from: Opened, on: Stop}")  # fmt: skip
+    for calls, told in (
+        ("{call: Enable}", []),  # Ping and Get_Opening are no commands of the protocol
+        ("{call: Enable}, {call: Move, with: 100}", [f"{order}Enable, Move"]),
+    ):
+        entry = ("{call: Enable}, {call: Move, with: 100}", calls)
+        (found,) = judged(door((exits, ""), entry, stop))
+        assert " calls Enable " in found.message
+        assert [text for _, text in found.notes if text.startswith(order)] == told
+
+
 def test_a_guard_that_keeps_to_the_protocol_is_seen() -> None:
     before, guarded = "effect: [{call: Ping}]", "guard: ready, effect: [{call: Move, with: 50}]"
     assert judged(door((before, guarded))) == []
