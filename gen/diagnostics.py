@@ -192,6 +192,8 @@ CODES: Mapping[str, str] = {
     "RV-0908": "No order of a bus's identifiers was found that meets all deadlines.",
     "RV-0909": "A time-out of a transfer may pass although no frame is lost.",
     "RV-0910": "A bus is too slow: a higher bit rate meets all limits that are exceeded.",
+    "RV-0911": "A node may not hand its trace and snapshots to a monitor in time.",
+    "RV-0912": "A trace is shorter than what may wait in it until it is emptied.",
     "RV-1001": "A file of events cannot be read, or is no list.",
     "RV-1002": "An entry of a file of events has an unknown form.",
     "RV-1003": "A time in a file of events is not well-formed, or before the one above it.",

@@ -19,6 +19,7 @@ from ravenchart.analysis.units import duration
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.nodes import SNAPSHOT_PERIOD, TRACE_LIMIT
 from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
 
@@ -42,6 +43,12 @@ QUEUE_SHORT, QUEUE_OPEN = "RV-0906", "RV-0907"
 
 GIVEN_UP = "RV-0909"
 """A time-out of a transfer may pass although no frame is lost."""
+
+STREAM_LATE = "RV-0911"
+"""A node may not hand its trace and snapshots to a monitor in time."""
+
+TRACE_SHORT = "RV-0912"
+"""A trace is too short for the records that may wait in it."""
 
 LARGEST = 3
 """How many interferers a diagnostic names."""
@@ -75,6 +82,7 @@ def each_finding(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnos
         *_of_receptions(analysis, causes),
         *_of_chains(analysis, causes),
         *_of_queues(analysis),
+        *_of_streams(analysis),
     )
     return (*(causes.counted(name, one) for name, one in found), *others)
 
@@ -134,26 +142,7 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
     if response.jitter:
         late = f"the release of {task.element} is late by up to {rounded.up(response.jitter)}"
         notes.append((task.origin, late))
-    if response.bound is None:
-        others = response.level.order[: response.level.reach]
-        load = [other for other in others if other.name != task.element]
-        load.sort(key=lambda other: -other.utilisation)
-        notes += [
-            (
-                tasks[other.name].origin,
-                f"{other.name}, period {rounded.down(other.period)}, preempts {task.element}: "
-                f"{rounded.percent(other.utilisation)} of the core",
-            )
-            for other in load[:LARGEST]
-        ]
-    for share in response.interference[:LARGEST]:
-        notes.append(
-            (
-                tasks[share.task.name].origin,
-                f"{share.task.name}, period {rounded.down(share.task.period)}, "
-                f"preempts {task.element}: {taken(share)}",
-            )
-        )
+    notes += _preempting(response, analysis)
     if blocking is not None:
         origin = tasks[blocking.user].origin if blocking.user in tasks else task.origin
         notes.append(
@@ -164,6 +153,23 @@ def _task_notes(response: Response, analysis: Analysis) -> tuple[tuple[Origin, s
             )
         )
     return tuple(notes)
+
+
+def _preempting(response: Response, analysis: Analysis) -> Iterator[tuple[Origin, str]]:
+    """The tasks that take most of its time or, where it has no bound, of its core."""
+    name = response.task.name
+    found = [(share.task, taken(share)) for share in response.interference]
+    if response.bound is None:
+        others = response.level.order[: response.level.reach]
+        load = sorted(others, key=lambda other: -other.utilisation)
+        found = [
+            (other, f"{rounded.percent(other.utilisation)} of the core")
+            for other in load
+            if other.name != name
+        ]
+    for other, what in found[:LARGEST]:
+        text = f"{other.name}, period {rounded.down(other.period)}, preempts {name}: {what}"
+        yield analysis.tasks[other.name].origin, text
 
 
 def taken(share: Interference) -> str:
@@ -263,6 +269,33 @@ def _of_queues(analysis: Analysis) -> Iterator[Diagnostic]:
             yield error(QUEUE_SHORT, one.origin, message, hint=hint)
         elif analysis.found.met:
             yield warning(QUEUE_OPEN, one.origin, f"any number of {one.what}, {lost}", hint=hint)
+
+
+def _of_streams(analysis: Analysis) -> Iterator[Diagnostic]:
+    """A warning for each stream that is late, unless a task of its core has no bound itself.
+
+    Of one that is not late, a warning where the trace is too short.
+    """
+    for one in analysis.streams:
+        if one.holds and one.is_short:
+            within = rounded.up(one.unread or 0)
+            message = f"up to {one.waiting} records may wait in the trace of {one.node.name} "
+            message += f"within {within}, but `trace` is {one.node.trace_depth}"
+            hint = "let its rows run less often"
+            if (one.waiting or 0) <= TRACE_LIMIT:
+                hint = f"give it `trace: {one.waiting}`, or {hint}"
+            yield warning(TRACE_SHORT, one.node.origin, message, hint=hint)
+        core = one.response.task.core
+        lost = any(r.bound is None for r in analysis.responses if r.task.core == core)
+        if one.holds or lost:
+            continue
+        message = f"{one.name} has no response-time bound: {no_bound_reason(one.response)}"
+        if one.bound is not None:
+            bound, period = rounded.against(one.bound, SNAPSHOT_PERIOD)
+            message = f"{one.name} does not keep ten snapshots a second: R = {bound} > T = {period}"
+        hint = "shorten worst-case execution times, lengthen periods, or record fewer values"
+        notes = tuple(_preempting(one.response, analysis))
+        yield warning(STREAM_LATE, one.origin, message, notes=notes, hint=hint)
 
 
 def _of_chains(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:

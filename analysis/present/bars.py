@@ -11,6 +11,7 @@ from typing import Any
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings.deadlines import no_bound_reason
+from ravenchart.analysis.system.stream import StreamResponse
 
 from .sentences import response_parts
 
@@ -49,6 +50,14 @@ def row_of(network: Network, found: Holistic, name: str) -> dict[str, Any]:
         "deadline_at": 100 * deadline / scale,
         "bar": [(k, 100 * time / scale) for k, time in _within(kinds, bound) if time > 0],
     }
+
+
+def stream_row(one: StreamResponse) -> dict[str, Any]:
+    """The row of a stream: that of a task, without activities, marked as the lowest priority."""
+    network = Network((one.response.task,))
+    found = Holistic({one.name: one.response}, {}, {one.name: 0}, rounds=1)
+    row = row_of(network, found, one.name)
+    return row | {"name": f"{one.name} (lowest priority)", "origin": one.origin, "rows": []}
 
 
 def _within(kinds: Mapping[str, int], bound: int | None) -> list[tuple[str, int]]:

@@ -116,6 +116,30 @@ def figures(analysis: Analysis) -> Json:
             for message in system.messages
             if (mode := message.transmission) is not None
         ],
+        **_streams(analysis),
         "changes": advice.figures(advice.of_model(analysis)),
         "ways": [latency_figures(latency) for latency in analysis.chains],
     }
+
+
+def _streams(analysis: Analysis) -> Json:
+    """The streams to monitors; no entry where no node declares one."""
+    found = [
+        {
+            "stream": one.name,
+            "node": one.node.name,
+            "period": one.response.task.period,
+            "wcet": one.response.task.wcet,
+            "response": one.bound,
+            "reason": None if one.response.reason is None else one.response.reason.value,
+            "met": one.holds,
+            "load": ratio(one.load),
+            "unread": one.unread,
+            "apart": one.apart,
+            "trace": one.node.trace_depth,
+            "records": None if one.records is None else one.records.trace,
+            "values": None if one.records is None else one.records.values,
+        }
+        for one in analysis.streams
+    ]
+    return {"streams": found} if found else {}

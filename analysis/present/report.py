@@ -29,11 +29,18 @@ from ravenchart.gen.model.buses import Bus
 from ravenchart.stacks.report import Memory
 
 from . import plots
-from .bars import row_of
+from .bars import row_of, stream_row
 from .page import page
 from .picture import draw
 from .rows import chain_picture, histogram_of, hop_cells, instants_of
-from .sentences import binding_lines, families, growth_line, offset_lines, verdict_line
+from .sentences import (
+    binding_lines,
+    families,
+    growth_line,
+    offset_lines,
+    stream_lines,
+    verdict_line,
+)
 
 SHOWN_CHAINS = 40
 """Chains that the report lists at most."""
@@ -207,7 +214,9 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         "growth": growth_line(analysis),
         "binding": binding_lines(analysis),
         "advice": advice.lines(advice.of_model(analysis)),
-        "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks],
+        "tasks": [_item(analysis, n) for n in analysis.worst_first() if n in analysis.tasks]
+        + [stream_row(one) for one in analysis.streams],
+        "streams": stream_lines(analysis),
         "buses": [_bus(analysis, bus) for bus in system.buses],
         "commands": tuple(command_times(analysis)),
         "limited": [

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -14,6 +14,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import GIVEN
+from ravenchart.analysis.system.stream import StreamResponse
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
 
@@ -145,6 +146,24 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
     if not names:
         return ()
     return (f"By their offsets: R of {', '.join(names)}. All others hold for any offsets.",)
+
+
+def stream_lines(analysis: Analysis) -> tuple[str, ...]:
+    """The load and the limits of each stream to a monitor; none where no node declares one."""
+    return tuple(line for one in analysis.streams for line in _stream_lines(one))
+
+
+def _stream_lines(one: StreamResponse) -> Iterator[str]:
+    load = rounded.percent(one.load)
+    yield f"{one.name} is the main program, below all tasks: core load {load} with it."
+    if one.apart is not None:
+        late = "" if one.holds else ": not ten a second"
+        yield f"Its snapshots are at most {rounded.up(one.apart)} apart{late}."
+    if one.node.trace_depth and one.records is not None:
+        values = one.records.values
+        also = f" and {values:,} recorded values" if values else ""
+        kept = f"{one.node.trace_depth:,} is {'too short' if one.is_short else 'enough'}"
+        yield f"At most {one.records.trace:,} records{also} wait in its trace: {kept}."
 
 
 def distance_lines(found: Holistic) -> tuple[str, ...]:

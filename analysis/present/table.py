@@ -15,10 +15,12 @@ from rich.text import Text
 from ravenchart import rounded, terminal
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.findings import advice
+from ravenchart.analysis.system.stream import StreamResponse
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.rounded import TimeUnit
 
-from .sentences import WORDS, load_lines, offset_lines, verdict_line
+from .bars import stream_row
+from .sentences import WORDS, load_lines, offset_lines, stream_lines, verdict_line
 
 LEGEND = (
     "Times in {}, rounded to the safe side: T period, D deadline, C execution or\n"
@@ -35,14 +37,17 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
         out.print(Text(line))
     out.print()
     worst, unit = analysis.worst_first(), _unit_of(analysis)
-    out.print(_table(analysis, "task", [name for name in worst if name in analysis.tasks], unit))
+    tasks = _table(analysis, "task", [name for name in worst if name in analysis.tasks], unit)
+    for one in analysis.streams:
+        tasks.add_row(*_stream_cells(one, unit), style="" if one.holds else "bold yellow")
+    out.print(tasks)
     if analysis.messages:
         sent = [name for name in worst if name in analysis.messages]
         out.print(_table(analysis, "message", sent, unit))
     if analysis.limited:
         out.print(_chains(analysis, unit))
     out.print(Text(LEGEND.format(unit.name), style="dim"))
-    for line in offset_lines(analysis.responses):
+    for line in (*offset_lines(analysis.responses), *stream_lines(analysis)):
         out.print(Text(line))
     for line in advice.lines(advice.of_model(analysis)):
         out.print(Text(line))
@@ -87,6 +92,22 @@ def _cells(analysis: Analysis, name: str, unit: TimeUnit) -> tuple[str, ...]:
         bound,
         unit.down(analysis.slack(name)),
         WORDS[analysis.verdict(name)],
+    )
+
+
+def _stream_cells(one: StreamResponse, unit: TimeUnit) -> tuple[str, ...]:
+    """The cells of a stream, which has neither jitter of its own nor blocking."""
+    row = stream_row(one)
+    bound, deadline = unit.against(row["bound"], row["deadline"])
+    period, wcet = one.response.task.period, one.response.task.wcet
+    zero = unit.up(0)
+    return (
+        row["name"],
+        unit.down(period),
+        deadline,
+        *(unit.up(wcet), zero, zero, bound),
+        unit.down(row["slack"]),
+        row["word"],
     )
 
 

@@ -27,6 +27,7 @@ from . import latencies
 from .depths import Depth, depths
 from .latencies import Delivery, Latencies
 from .network import network_of
+from .stream import StreamResponse, streams
 from .transport import Transfer, transfers
 
 if TYPE_CHECKING:
@@ -184,6 +185,11 @@ class Analysis:
         from .graph import Ways  # only here: its graphs take longer to import than all of this
 
         return Ways.of(self.system)
+
+    @cached_property
+    def streams(self) -> tuple[StreamResponse, ...]:
+        """The streams of the nodes to monitors. They count in no other bound, nor as tasks."""
+        return tuple(streams(self.system, self.network, self.found))
 
     @cached_property
     def transfers(self) -> dict[str, Transfer]:

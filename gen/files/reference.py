@@ -61,6 +61,7 @@ TITLES: Mapping[str, str] = {
     "NodeForm": "Node",
     "ProbeForm": "Probe",
     "SupervisionForm": "Supervision",
+    "StreamForm": "Stream",
     "TickForm": "Tick",
     "BusForm": "Bus",
     "WatchForm": "Watch of a bus",

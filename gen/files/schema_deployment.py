@@ -8,6 +8,8 @@ from typing import Annotated, Any
 from pydantic import Field as PydanticField
 from pydantic import Tag
 
+from ravenchart.gen.model.nodes import TRACE_LIMIT
+
 from .schema_base import (
     Constant,
     DatabaseName,
@@ -49,6 +51,17 @@ class SupervisionForm(Element):
     )
 
 
+class StreamForm(Element):
+    """The main program of a node while a monitor watches: the task of the lowest priority.
+
+    Every 5 ms it empties the trace, and every 100 ms it writes a snapshot.
+    """
+
+    wcet: PositiveSpan = key(
+        "Worst-case execution time of one snapshot and of 20 drains of the trace; at most 100 ms."
+    )
+
+
 class TickForm(Element):
     """A timer that interrupts periodically: timed releases wait for it."""
 
@@ -62,7 +75,10 @@ class NodeForm(Element):
     context_switch: Span = key("Time of one context switch.")
     critical_section: Span = key("Longest time inside any protected operation.")
     trace: int = PydanticField(
-        default=0, ge=0, le=65_536, description="Records the trace holds, 0 to 65536; 0: none."
+        default=0,
+        ge=0,
+        le=TRACE_LIMIT,
+        description="Records the trace holds, 0 to 65536; 0: none.",
     )
     probe: ProbeForm | None = optional(
         "A task above all others that measures how long a host withholds the processor."
@@ -70,6 +86,10 @@ class NodeForm(Element):
     supervision: SupervisionForm | None = optional(
         "A task above all processors and drivers that finds processors which no longer complete "
         "their releases; none unless given."
+    )
+    stream: StreamForm | None = optional(
+        "The main program at the lowest priority, which hands the trace and ten snapshots a second "
+        "to a monitor; analysed where given, and the same program is generated with it and without."
     )
     release: Span = PydanticField(
         default=0,

@@ -20,6 +20,31 @@ SUPERVISOR = "supervisor"
 """The liveness supervision of a node, as a task."""
 
 
+STREAM = "stream"
+"""The stream of a node, as a task of the analysis."""
+
+TRACE_LIMIT = 65_536
+"""Records that a trace may hold."""
+
+DRAIN_PERIOD = Ns(5_000_000)
+"""How often the main program empties the trace and looks for a request to stop."""
+
+SNAPSHOT_PERIOD = Ns(100_000_000)
+"""Least time between two snapshots of a node."""
+
+
+@dataclass(frozen=True, slots=True)
+class MonitorStream:
+    """The trace and the snapshots of a node, as work of the main program at the lowest priority.
+
+    ``wcet`` is the longest execution of one snapshot and of the drains of the trace within one
+    `SNAPSHOT_PERIOD`.
+    """
+
+    origin: Origin
+    wcet: Ns
+
+
 @dataclass(frozen=True, slots=True)
 class Tick:
     """A timer that interrupts a node every ``period`` for up to ``wcet``."""
@@ -59,6 +84,7 @@ class Node:
     """The tick that makes timed releases late by up to its period; None: an exact timer."""
     cores: int = 1
     supervision: Supervision | None = None
+    stream: MonitorStream | None = None
     database_name: str | None = None
     """Its name in databases; None: that in the model."""
 

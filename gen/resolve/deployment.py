@@ -14,6 +14,7 @@ from ravenchart.gen.files.schema_deployment import (
     NodeForm,
     ProcessorForm,
     ShutdownForm,
+    StreamForm,
     SupervisionForm,
 )
 from ravenchart.gen.files.schema_frames import (
@@ -27,7 +28,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
 from ravenchart.gen.model.component import Direction
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.nodes import Node, Supervision, Tick
+from ravenchart.gen.model.nodes import SNAPSHOT_PERIOD, MonitorStream, Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     UNFIT_PORT,
@@ -71,8 +72,22 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
         tick,
         form.cores,
         _supervision(form.supervision, findings),
+        _stream(form.stream, findings),
         form.database_name,
     )
+
+
+def _stream(form: StreamForm | None, findings: Findings) -> MonitorStream | None:
+    """The stream of a node; its work takes no longer than the period of the snapshots."""
+    if form is None:
+        return None
+    if form.wcet > SNAPSHOT_PERIOD:
+        message = (
+            f"the stream may take {shown(Ns(form.wcet))}, longer than its period, "
+            f"{shown(SNAPSHOT_PERIOD)}"
+        )
+        findings.error("RV-0703", form.at("wcet"), message)
+    return MonitorStream(form.origin, Ns(form.wcet))
 
 
 def _supervision(form: SupervisionForm | None, findings: Findings) -> Supervision | None:

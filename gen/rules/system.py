@@ -274,6 +274,8 @@ def sections_are_part_of_work(resolved: Resolved) -> Iterator[Diagnostic]:
             runs.append((node.origin, "the probe", node.probe.wcet))
         if node.supervision is not None:
             runs.append((node.origin, "the supervision", node.supervision.wcet))
+        if node.stream is not None:
+            runs.append((node.stream.origin, "the stream", node.stream.wcet))
         short = min(runs, key=lambda run: run[2], default=None)
         if short is not None and short[2] < node.critical_section:
             message = (

@@ -114,7 +114,12 @@ def _coverage(seen: Observation) -> Iterator[Coverage]:
 def _left(system: System) -> Iterator[str]:
     """The WCETs of a model that a run does not measure."""
     for node in system.nodes:
-        parts = {"probe": node.probe, "supervision": node.supervision, "tick": node.tick}
+        parts = {
+            "probe": node.probe,
+            "supervision": node.supervision,
+            "tick": node.tick,
+            "stream": node.stream,
+        }
         yield from (f"{node.name}.{key}.wcet" for key, part in parts.items() if part is not None)
     for bus in system.buses:
         yield f"{bus.name}.driver_wcet"

@@ -50,13 +50,11 @@ from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.trace_calls import element_constant, row_number, traced
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.nodes import DRAIN_PERIOD
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
 
 from .supervision import safe_state, supervised
-
-POLL_NS = 5_000_000
-"""How often the main program empties the trace and looks for a request to stop."""
 
 
 def emit_reports(system: System, header: str) -> list[Unit]:
@@ -242,7 +240,7 @@ def emit_main(system: System, header: str) -> Unit:
         do(ref(root, ada_case(i), "Offer"), event_value(system.instance(i).component, e, root=root))
         for i, e in system.shutdown.raises
     ]
-    steps = -(-system.shutdown.grace // POLL_NS)
+    steps = -(-system.shutdown.grace // DRAIN_PERIOD)
     begins = has_lifecycle(system)
     started = (do(ref(root, LIFECYCLE, "Start_All"), ref("Started")),) if begins else ()
     ended = OperatorChain("or else", (ref("Stop"), Prefix("not", ref("Started"))))
@@ -287,7 +285,7 @@ def emit_main(system: System, header: str) -> Unit:
                 Object(
                     "Step",
                     "Ada.Real_Time.Time_Span",
-                    call("Ada.Real_Time.Milliseconds", number(POLL_NS // 1_000_000)),
+                    call("Ada.Real_Time.Milliseconds", number(DRAIN_PERIOD // 1_000_000)),
                     constant=True,
                 ),
                 Object("Next", "Ada.Real_Time.Time", ref("Ada.Real_Time.Clock")),
