@@ -154,6 +154,7 @@ def test_the_bus_of_a_shell_is_shown_until_it_ends_and_then_that_of_the_next_one
             )  # fmt: skip
             try:
                 expect(bus.locator("h3")).to_contain_text("ward: bus of a run, ", timeout=60_000)
+                expect(bus.locator("h3")).not_to_contain_text("the run has ended", timeout=60_000)
                 expect(bus.get_by_role("row", name="motor 0x")).to_contain_text("value 0 ul")
                 assert shell.stdin is not None
                 shell.stdin.write(f"send line value={given}\n")
