@@ -14,6 +14,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.chains import HopLatency
 from ravenchart.analysis.core.responses import Interference, Reason, Response
 from ravenchart.analysis.system.latencies import HopKind, Latency
+from ravenchart.analysis.system.stream import StreamResponse
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import duration
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
@@ -277,25 +278,32 @@ def _of_streams(analysis: Analysis) -> Iterator[Diagnostic]:
     Of one that is not late, a warning where the trace is too short.
     """
     for one in analysis.streams:
-        if one.holds and one.is_short:
-            within = rounded.up(one.unread or 0)
-            message = f"up to {one.waiting} records may wait in the trace of {one.node.name} "
-            message += f"within {within}, but `trace` is {one.node.trace_depth}"
-            hint = "let its rows run less often"
-            if (one.waiting or 0) <= TRACE_LIMIT:
-                hint = f"give it `trace: {one.waiting}`, or {hint}"
-            yield warning(TRACE_SHORT, one.node.origin, message, hint=hint)
         core = one.response.task.core
-        lost = any(r.bound is None for r in analysis.responses if r.task.core == core)
-        if one.holds or lost:
-            continue
-        message = f"{one.name} has no response-time bound: {no_bound_reason(one.response)}"
-        if one.bound is not None:
-            bound, period = rounded.against(one.bound, SNAPSHOT_PERIOD)
-            message = f"{one.name} does not keep ten snapshots a second: R = {bound} > T = {period}"
-        hint = "shorten worst-case execution times, lengthen periods, or record fewer values"
-        notes = tuple(_preempting(one.response, analysis))
-        yield warning(STREAM_LATE, one.origin, message, notes=notes, hint=hint)
+        if one.holds:
+            if one.is_short:
+                yield _trace_is_short(one)
+        elif all(r.bound is not None for r in analysis.responses if r.task.core == core):
+            yield _stream_is_late(one, analysis)
+
+
+def _trace_is_short(one: StreamResponse) -> Diagnostic:
+    within = rounded.up(one.unread or 0)
+    message = f"up to {one.waiting} records may wait in the trace of {one.node.name} "
+    message += f"within {within}, but `trace` is {one.node.trace_depth}"
+    hint = "let its rows run less often"
+    if (one.waiting or 0) <= TRACE_LIMIT:
+        hint = f"give it `trace: {one.waiting}`, or {hint}"
+    return warning(TRACE_SHORT, one.node.origin, message, hint=hint)
+
+
+def _stream_is_late(one: StreamResponse, analysis: Analysis) -> Diagnostic:
+    message = f"{one.name} has no response-time bound: {no_bound_reason(one.response)}"
+    if one.bound is not None:
+        bound, period = rounded.against(one.bound, SNAPSHOT_PERIOD)
+        message = f"{one.name} does not keep ten snapshots a second: R = {bound} > T = {period}"
+    hint = "shorten worst-case execution times, lengthen periods, or record fewer values"
+    notes = tuple(_preempting(one.response, analysis))
+    return warning(STREAM_LATE, one.origin, message, notes=notes, hint=hint)
 
 
 def _of_chains(analysis: Analysis, causes: Causes) -> Iterator[Diagnostic]:

@@ -17,7 +17,7 @@ import os
 import struct
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -172,8 +172,3 @@ class RingReader:
 def _place(number: int) -> int:
     """Where in the file a record is."""
     return (1 + number % SLOTS) * RECORD_BYTES
-
-
-def rings(folders: Sequence[Path], program: str) -> list[Path]:
-    """The rings of runs that go on, of a program in any mode; the newest first."""
-    return held_files.held_files(folders, program, MARK)

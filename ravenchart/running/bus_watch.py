@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 import can
 
@@ -116,16 +115,6 @@ class _Seen:
     fields: Mapping[str, Value] = field(default_factory=dict)
 
 
-class _Frames(Protocol):
-    """Where frames come from."""
-
-    def recv(self, timeout: float) -> can.Message | None:
-        """The next frame; None where none comes in that time, in s."""
-
-    def shutdown(self) -> None:
-        """Take no more."""
-
-
 class BusWatch:
     """Takes the frames of a bus in a thread of its own; anybody may look."""
 
@@ -143,12 +132,9 @@ class BusWatch:
         self._taken: deque[tuple[float, int]] = deque()
         self._lock = threading.Lock()
         self._ends = threading.Event()
-        self._ring: RingReader | None = None
+        self._source: can.BusABC | RingReader
         try:
-            if isinstance(end, BusEnd):
-                self._source: _Frames = opened_bus(end)
-            else:
-                self._source = self._ring = RingReader(end)
+            self._source = opened_bus(end) if isinstance(end, BusEnd) else RingReader(end)
         except BenchError as fault:
             raise Unusable(str(fault)) from None
         except OSError as fault:
@@ -179,7 +165,7 @@ class BusWatch:
                 unknown=self._unknown,
                 malformed=self._malformed,
                 errors=self._errors,
-                missed=0 if self._ring is None else self._ring.missed,
+                missed=self._source.missed if isinstance(self._source, RingReader) else 0,
                 messages=[self._message(m, self._seen[m.name]) for m in self._known.values()],
                 gone=self._gone,
                 ended=self._gone == RUN_ENDED,

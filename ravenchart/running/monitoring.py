@@ -31,12 +31,9 @@ NodeFile = tuple[programs.Program, str]
 def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
     """The files of the nodes that run; none where none does. ``note`` gets what is left out."""
     made = programs.programs_of(checked)
-    homes = programs.homes_of(checked.path)
     files: list[NodeFile] = []
     for program in made:
-        main = f"{checked.stem}_main"
-        folders = [home / program.folder for home in homes]
-        running = held_files.held_files(folders, main, snapshots.MARK)
+        running = _held(checked, [program], snapshots.MARK)
         if running:
             files.append((program, str(running[0])))
         if running[1:]:
@@ -51,11 +48,14 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
 
 def bus_of_run(checked: Checked) -> Path | None:
     """The ring of the bus on which `run` or `shell` lets controllers run now; the newest one."""
-    main = f"{checked.stem}_main"
+    return next(iter(_held(checked, programs.programs_of(checked), bus_ring.MARK)), None)
+
+
+def _held(checked: Checked, made: Sequence[programs.Program], mark: str) -> list[Path]:
+    """The files with a mark beside programs of the model, as `held_files.held_files`."""
     homes = programs.homes_of(checked.path)
-    made = programs.programs_of(checked)
-    found = bus_ring.rings([home / one.folder for one in made for home in homes], main)
-    return found[0] if found else None
+    folders = [home / one.folder for one in made for home in homes]
+    return held_files.held_files(folders, f"{checked.stem}_main", mark)
 
 
 def none_runs(checked: Checked) -> str:

@@ -425,11 +425,8 @@ def run_nodes(
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
     words = bus_words(analysis, controllers, plan)
-    beside = controllers[0].executable
-    with (
-        separate_cores(),
-        server.running("port=0", *words, log=log, beside=beside) as (_, channel),
-    ):
+    bus = server.running("port=0", *words, log=log, beside=controllers[0].executable)
+    with separate_cores(), bus as (_, channel):
         running: list[ControllerProcess] = []
         try:
             for process in joining(controllers, traces, channel, cores):

@@ -52,13 +52,14 @@ def started(
         trace.unlink(missing_ok=True)
     grace = analysis.system.shutdown.grace / 1e9
     cores = sorted(os.sched_getaffinity(0))
+    first = controllers[0].executable
     processes: list[ControllerProcess] = []
     ended: list[Ended] = []
     with ExitStack() as stack:
         core = stack.enter_context(separate_cores())
         if joins_a_server(analysis.system, len(controllers)):
             words = bus_words(analysis, controllers, None)
-            bus = server.running("port=0", *words, log=log, beside=controllers[0].executable)
+            bus = server.running("port=0", *words, log=log, beside=first)
             _, channel = stack.enter_context(bus)
             stack.callback(_stop, processes, ended, grace)
             for process in joining(controllers, traces, channel, cores):
@@ -66,10 +67,9 @@ def started(
                 process.wait_until_joined()
             peer = Peer.join(channel, vocabulary.codec)
         else:
-            beside = controllers[0].executable
-            record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name, beside))
+            record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name, first))
             stack.callback(_stop, processes, ended, grace)
-            processes.append(ControllerProcess(controllers[0].executable, traces[0], core))
+            processes.append(ControllerProcess(first, traces[0], core))
             peer = Peer.connect(processes[0].wait_for_port(), vocabulary.codec, record)
         stack.callback(peer.close)
         yield StartedControllers(

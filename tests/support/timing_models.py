@@ -151,3 +151,30 @@ def analysed(text: str, *replacements: tuple[str, str]) -> Analysis:
     result = load(Path("model.yaml"), lambda path, limit: text.encode()[:limit])
     assert result.system is not None, [str(item) for item in result.diagnostics]
     return analyse(result.system)
+
+
+def worker(control: str, toil: str) -> str:
+    """Types, and a component with a chart and an activity of these execution times."""
+    return f"""\
+types:
+  Count: {{range: [0, 1000]}}
+components:
+  Worker:
+    events: [Late]
+    data: {{rounds: {{type: Count, initial: 0}}}}
+    regions:
+      Control:
+        period: 10 ms
+        wcet: {control}
+        queue: 4
+        initial: Fine
+        states: {{Fine: {{}}, Tardy: {{}}}}
+        transitions:
+          late: {{from: Fine, to: Tardy, on: Late}}
+    activities:
+      toil:
+        period: 10 ms
+        wcet: {toil}
+        body:
+          - {{set: rounds, to: "min(rounds + 1, 1000)"}}
+"""

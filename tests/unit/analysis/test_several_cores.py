@@ -16,30 +16,11 @@ from ravenchart.command_line import main
 from ravenchart.failures import OK, WRONG
 from ravenchart.gen.model.system import System
 from tests.support.pump import loaded
+from tests.support.timing_models import worker
 
-MODEL = """\
-system: Twins
-types:
-  Count: {range: [0, 1000]}
-components:
-  Worker:
-    events: [Late]
-    data: {rounds: {type: Count, initial: 0}}
-    regions:
-      Control:
-        period: 10 ms
-        wcet: 200 us
-        queue: 4
-        initial: Fine
-        states: {Fine: {}, Tardy: {}}
-        transitions:
-          late: {from: Fine, to: Tardy, on: Late}
-    activities:
-      toil:
-        period: 10 ms
-        wcet: 6 ms
-        body:
-          - {set: rounds, to: "min(rounds + 1, 1000)"}
+MODEL = (
+    f"system: Twins\n{worker('200 us', '6 ms')}"
+    + """\
 nodes:
   board: {context_switch: 10 us, critical_section: 5 us, trace: 16, cores: 2}
 instances:
@@ -54,6 +35,7 @@ processors:
      activities: [right.Control, right.toil]}
 shutdown: {raises: [left.Late], grace: 10 ms}
 """
+)
 
 
 def system_of_text(text: str) -> System:

@@ -28,33 +28,13 @@ from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from tests.support.listings import one_of
 from tests.support.pump import loaded
-from tests.support.timing_models import SWITCHES
+from tests.support.timing_models import SWITCHES, worker
 
 MS = 1_000_000
 
-MODEL = """\
-system: Desk
-types:
-  Count: {range: [0, 1000]}
-components:
-  Worker:
-    events: [Late]
-    data: {rounds: {type: Count, initial: 0}}
-    regions:
-      Control:
-        period: 10 ms
-        wcet: 1 ms
-        queue: 4
-        initial: Fine
-        states: {Fine: {}, Tardy: {}}
-        transitions:
-          late: {from: Fine, to: Tardy, on: Late}
-    activities:
-      toil:
-        period: 10 ms
-        wcet: 5 ms
-        body:
-          - {set: rounds, to: "min(rounds + 1, 1000)"}
+MODEL = (
+    f"system: Desk\n{worker('1 ms', '5 ms')}"
+    + """\
 nodes:
   board: {context_switch: 10 us, critical_section: 5 us, trace: 64, stream: {wcet: 10 ms}}
 instances:
@@ -63,6 +43,7 @@ processors:
   work: {stack: 16 KiB, on_deadline_miss: [own.Late], activities: [own.Control, own.toil]}
 shutdown: {raises: [own.Late], grace: 10 ms}
 """
+)
 
 
 def of_text(text: str) -> Analysis:

@@ -51,6 +51,11 @@ def ring(path: Path) -> Iterator[BusRing]:
     made.close()
 
 
+def rings(program: Path) -> list[Path]:
+    """Those of a program that are written now."""
+    return held_files.held_files([program.parent.parent], program.name, bus_ring.MARK)
+
+
 def numbered(number: int) -> can.Message:
     """A frame that carries its number."""
     return can.Message(
@@ -160,10 +165,10 @@ def test_ten_thousand_frames_of_a_quick_writer_are_whole_or_missed(path: Path) -
 def test_the_end_of_a_run_is_told_after_its_last_frame(program: Path) -> None:
     with bus_ring.shown(program) as ring:
         assert ring is not None
-        (path,) = bus_ring.rings([program.parent.parent], program.name)
+        (path,) = rings(program)
         reader = RingReader(path)
         ring.take(numbered(4))
-    assert bus_ring.rings([program.parent.parent], program.name) == [] and not path.exists()
+    assert rings(program) == [] and not path.exists()
     assert reader.recv(0.0) is not None
     with pytest.raises(RunEndedError):
         reader.recv(0.0)
@@ -214,7 +219,7 @@ def test_frames_of_the_bench_are_shown_with_a_log_and_without(
 ) -> None:
     for log in (None, tmp_path / "bus.log"):
         with bus_log.recorded(log, "ward", program) as record:
-            (path,) = bus_ring.rings([tmp_path], program.name)
+            (path,) = rings(program)
             reader = RingReader(path)
             record(numbered(3))
             assert taken(reader) == [3]
@@ -232,7 +237,7 @@ def test_records_of_the_bus_server_are_shown_with_their_times(
     )  # fmt: skip
     log = tmp_path / "bus.log" if is_logged else None
     with bus_log.written(log, program) as descriptor:
-        (path,) = bus_ring.rings([tmp_path], program.name)
+        (path,) = rings(program)
         reader = RingReader(path)
         os.write(descriptor, encode(hello))
         os.write(descriptor, encode(BusRecord(RecordKind.FRAME, identifier=9, time=2 * 10**9)))
