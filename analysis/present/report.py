@@ -22,6 +22,7 @@ from ravenchart.analysis.system.journeys import Journey
 from ravenchart.analysis.system.network import frame_length
 from ravenchart.analysis.system.observed import Observation
 from ravenchart.analysis.system.protection import protected
+from ravenchart.analysis.system.row_responses import BINS, row_histograms
 from ravenchart.analysis.system.supervision import watches
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import Ns
@@ -241,6 +242,8 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         "pictures": [(c, Markup(svg)) for c, svg in run.pictures] if run else [],
         "compared": compare(analysis, run.observation) if run and run.observation else (),
         "executions": executions(analysis, run.observation) if run and run.observation else (),
+        "responses": row_histograms(analysis, run.observation) if run and run.observation else (),
+        "bins": BINS,
         "histograms": _histograms(run),
         "visits": _visits(run),
         "watches": watches(analysis),

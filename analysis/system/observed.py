@@ -156,6 +156,11 @@ class Observation:
     values: list[TraceRecord] = field(default_factory=list)
     """The recorded values, in the order in which they were recorded."""
     processors: dict[str, Releases] = field(default_factory=dict)
+    reports: list[tuple[str, Releases]] = field(default_factory=list)
+    """All counts that processors had, in the order of their reports; ``processors`` has the last.
+    Empty where ``parts`` has them."""
+    parts: dict[str, Observation] = field(default_factory=dict, repr=False)
+    """Where it joins several controllers, the observation of each, by node."""
     executions: dict[str, Ns] = field(default_factory=dict)
     queues: dict[str, QueueFill] = field(default_factory=dict)
     """The queues of events, by region."""
@@ -272,7 +277,7 @@ def merged(parts: Mapping[str, Observation]) -> Observation:
     """
     first = min(part.start for part in parts.values())
     elements: dict[int, NumberedElement] = {}
-    whole = Observation(TraceMap("", "", elements), start=first, complete=True)
+    whole = Observation(TraceMap("", "", elements), start=first, complete=True, parts=dict(parts))
     for node, part in parts.items():
         own = {e: replace(e, number=e.number + len(elements)) for e in part.map.elements.values()}
         late = part.start - first
@@ -332,7 +337,9 @@ def _take_count(words: list[str], seen: Observation) -> None:
                 _count(releases), _count(misses), Ns(_count(worst)), seen.now,
                 Ns(_count(last[0])) if last else None,
             )  # fmt: skip
-            seen.processors[_known(number, seen.map, "processor").name] = counts
+            name = _known(number, seen.map, "processor").name
+            seen.processors[name] = counts
+            seen.reports.append((name, counts))
         case ["Q", number, waiting, highest]:
             fill = QueueFill(_count(waiting), _count(highest))
             seen.queues[_known(number, seen.map, "region").name] = fill

@@ -19,7 +19,7 @@ from typing import IO
 
 from ravenchart.tools import children
 
-from . import held_files, snapshots
+from . import held_files, live_responses, snapshots
 
 ERROR = "error: "
 """How a controller begins a line about a failure of its own."""
@@ -87,7 +87,8 @@ class ControllerProcess:
         """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
 
         ``environment`` has further variables, such as the address of the bus server. While the
-        process runs, a monitor finds the file of its snapshots beside the executable.
+        process runs, a monitor finds the file of its snapshots beside the executable, and a link
+        to its trace.
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
@@ -95,6 +96,7 @@ class ControllerProcess:
         """The file that a monitor finds, where this one has made it."""
         if self.snapshots is not None:
             told[snapshots.VARIABLE] = str(self.snapshots)
+            live_responses.link_trace(self.snapshots, trace)
         try:
             self._process = children.popen(
                 [executable.absolute()],
@@ -194,6 +196,7 @@ class ControllerProcess:
     def _unlink_snapshots(self) -> None:
         if self.snapshots is not None:
             self.snapshots.unlink(missing_ok=True)
+            live_responses.trace_beside(self.snapshots).unlink(missing_ok=True)
 
     def _early_end(self) -> str:
         """The reason why the output ended before the port was known."""

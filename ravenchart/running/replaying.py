@@ -27,10 +27,12 @@ from ravenchart.analysis.system.observed import (
     TraceRecord,
     read_trace,
 )
+from ravenchart.analysis.system.row_responses import RowHistogram
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
 from .monitored import LISTED, NO_COUNTS, NodeMonitor, WatchedNode, event_of
+from .row_histories import histories
 from .snapshots import KINDS, RECENT, Snapshot, Tally
 from .traces.files import NodeTrace
 from .traces.values import Point, Quantity, extremes
@@ -88,6 +90,7 @@ class ReplayedController:
         self._end = max((trace.seen.end, *(one.at for one in self._reports)))
         self._kept: dict[tuple[int, int, int], list[Point]] = {}
         self.gaps = tuple(self._gaps())
+        self._histories = tuple(histories(analysis, trace.seen))
 
     @property
     def end(self) -> Ns:
@@ -122,6 +125,10 @@ class ReplayedController:
         """When the counts were reported that are shown at an instant, in time of the controller."""
         number = bisect_right(self._reports, at - self.late, key=lambda one: one.at)
         return self._reports[number - 1].at if number else None
+
+    def responses(self, at: int) -> list[RowHistogram]:
+        """The responses of its activities, from its start to the last report before an instant."""
+        return [one.at(at - self.late) for one in self._histories]
 
     def _snapshot(self, now: Ns, number: int) -> Snapshot:
         """The snapshot of a time: the records until then, and the counts of the report before."""

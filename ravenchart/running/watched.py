@@ -12,12 +12,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ravenchart.analysis.system.observed import TraceError, of_model, read_map
+from ravenchart.analysis.system.observed import Releases, TraceError, of_model, read_map
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Refused, Unusable
-from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.language.terms import NO_TIME, Ns
 
+from .live_responses import LiveRows, ProcessResponses
 from .monitored import NodeMonitor, Overlooked, WatchedEvent, WatchedNode
 from .snapshots import Snapshot, SnapshotFile, parsed_snapshot
 
@@ -77,6 +78,10 @@ class WatchedController(ABC):
         """
 
     @abstractmethod
+    def responses(self) -> LiveRows:
+        """The responses of its activities, as far as they are known at the last look."""
+
+    @abstractmethod
     def close(self) -> None:
         """Watch it no longer."""
 
@@ -97,6 +102,7 @@ class WatchedProcess(WatchedController):
         """Unusable where no controller writes that file, OSError where there is none."""
         super().__init__(checked, program)
         self._file = SnapshotFile(path)
+        self._responses = ProcessResponses(checked.analysis, self.map, path)
         if self._file.owner() is None:
             self.close()
             raise Unusable(f"{path}: no controller writes this file now")
@@ -104,6 +110,18 @@ class WatchedProcess(WatchedController):
     def close(self) -> None:
         """Give the file back."""
         self._file.close()
+        self._responses.close()
+
+    def responses(self) -> LiveRows:
+        """From its trace, where that is beside the file of its snapshots; else from these."""
+        counts = (
+            (one.name, Releases(
+                one.completed, one.misses, Ns(one.worst_response), Ns(self.node.now),
+                None if one.last_response is None else Ns(one.last_response),
+            ))
+            for one in self.node.processors
+        )  # fmt: skip
+        return self._responses.look(self.start or NO_TIME, counts)
 
     @property
     def has_ended(self) -> bool:

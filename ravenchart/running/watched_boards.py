@@ -35,6 +35,7 @@ from ravenchart.building.checking import Checked
 from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
+from .live_responses import COUNTED, NOT_COUNTED, LiveResponses, LiveRows
 from .monitored import LISTED, NO_COUNTS
 from .snapshots import KINDS, RECENT, Snapshot, Tally
 from .traces.reports import BEGIN, SAID
@@ -212,6 +213,7 @@ class WatchedBoard(WatchedController):
         """Unusable where the line cannot be opened."""
         super().__init__(checked, program)
         self._counted: _Counted | None = None
+        self._responses = self._no_responses()
         self._line = line
         self._reader = _Reader(line)
         self._next = float("inf")
@@ -220,6 +222,16 @@ class WatchedBoard(WatchedController):
     def close(self) -> None:
         """Give the line back."""
         self._reader.close()
+
+    def responses(self) -> LiveRows:
+        """Counted from the start of the board, until a record is missing."""
+        self._responses.count()
+        whole = self._counted is not None and not self._counted.partial
+        known = whole and not self._responses.gaps
+        return LiveRows(self._responses.shown(), COUNTED if known else NOT_COUNTED)
+
+    def _no_responses(self) -> LiveResponses:
+        return LiveResponses(self.checked.analysis, self.map, whole=True)
 
     @property
     def has_ended(self) -> bool:
@@ -264,10 +276,13 @@ class WatchedBoard(WatchedController):
         if starts or (self._counted is None and NAMED.fullmatch(line)):
             self.begin(Ns(time.monotonic_ns()), listed=0)
             self._counted = _Counted(self.map, partial=not starts)
+            self._responses = self._no_responses()
         if self._counted is None or not line:
             return
         try:
             self._counted.take(line)
+            if not self._counted.partial and not line.startswith(SAID):
+                self._responses.take(line)
         except ValueError:
             self._lose(1)
             return
@@ -282,6 +297,7 @@ class WatchedBoard(WatchedController):
         assert self._counted is not None
         counts = self._counted.seen.counts
         if number:
+            self._responses.gaps = True
             counts[UNREADABLE] = counts.get(UNREADABLE, 0) + number
 
     def _say_what_is_missing(self) -> None:

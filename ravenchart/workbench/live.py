@@ -104,8 +104,10 @@ class LiveView:
             if self._values[number].start != one.start:
                 self._values[number] = LastValues(system, one.start)
             lines = self._values[number].look(one.node)
-            yield shown_node(system, one.node, one.last, lines) | {
+            responses = one.responses()
+            yield shown_node(system, one.node, one.last, lines, responses.rows) | {
                 "age": one.age,
+                "responses_note": responses.note,
                 "overlooked": overlooked_in_words(one.overlooked),
             }
 

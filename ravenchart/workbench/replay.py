@@ -93,8 +93,10 @@ class ReplayView:
             for one in plotted(self._checked.system)
             if one.element in values
         }
-        return shown_node(self._checked.system, node, node.events[-KEPT:], lines) | {
+        events, responses = node.events[-KEPT:], controller.responses(at)
+        return shown_node(self._checked.system, node, events, lines, responses) | {
             "window": window,
+            "responses_note": "",
             "starts": controller.late if at < controller.late else None,
             "counted": controller.counted(at),
             "records": [

@@ -17,6 +17,7 @@ from ravenchart.analysis.system.observed import read_map
 from ravenchart.building import checking, generation, programs
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
+from ravenchart.running.live_responses import trace_beside
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
@@ -70,6 +71,41 @@ def test_the_live_tab_follows_a_controller_to_its_end(tmp_path: Path) -> None:
             ended = process.stop(0.0)
         assert ended.exit_code == 0, ended.warnings
         expect(live.locator("h3")).to_contain_text("ended in order")
+        pane.closed(bench.address)
+
+
+def test_the_live_tab_has_the_responses_of_each_activity(tmp_path: Path) -> None:
+    """From the trace of the run; without it from snapshots, of the last activities alone."""
+    executable = built(PUMP)
+    with running(PUMP) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        live = pane.page.get_by_role("region", name="Controller of board")
+        ports = live.get_by_role("row", name="bed.ports 100 us 345 us")
+        drive = live.get_by_role("row", name="bed.drive 50 us 845 us")
+        process = ControllerProcess(executable, tmp_path / "trace.txt", 0)
+        try:
+            expect(live).to_contain_text("From the trace up to ")
+            sampled, executed = _numbers(ports.get_by_role("cell").nth(5), r"([1-9]\d*) of (\d+)")
+            assert sampled == executed  # each one ends before the next one begins
+            expect(drive.locator("rect.exact")).not_to_have_count(0)
+            expect(ports.get_by_role("img")).to_have_accessible_name(
+                re.compile(
+                    r"^Responses of bed.ports: \d+ of \d+ sampled; C 100 us, R 345 us; \d+ at"
+                )
+            )
+            assert serious(pane.page) == []
+        finally:
+            process.stop(0.0)
+        process = ControllerProcess(executable, tmp_path / "trace.txt", 0)
+        assert process.snapshots is not None
+        trace_beside(process.snapshots).unlink()
+        try:
+            expect(live).to_contain_text("the trace of this controller is not at hand")
+            expect(drive.locator("rect.exact")).not_to_have_count(0)
+            expect(ports.locator("rect")).to_have_count(0)
+        finally:
+            process.stop(0.0)
         pane.closed(bench.address)
 
 

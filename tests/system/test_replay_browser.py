@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -149,6 +150,54 @@ def test_why_a_board_has_ended_is_told(tmp_path: Path) -> None:
         pane = BrowserPage(browser, bench.address)
         expect(pane.page.locator(".player")).to_contain_text(f"The controller said: {said}")
         expect(pane.page.locator(".player")).to_contain_text("The trace of board was cut off")
+        pane.closed(bench.address)
+
+
+def _releases() -> Iterator[str]:
+    """Two releases of `control` and a report behind each: the second one has three activities."""
+    control = number("control", "processor")
+    jobs = {0: ("ports", "Keys", "Infusion", "turn", "fill", "drive", "show"),
+            50_000_000: ("ports", "Keys", "Infusion", "drive")}  # fmt: skip
+    yield from report(trace_map(), 0, 0, 0)
+    for releases, (due, rows) in enumerate(jobs.items(), 1):
+        for place, row in enumerate(rows, 1):
+            yield f"T {due + place * 40_000} Activity {number(f'bed.{row}', 'row')} 0"
+        last = 300_000 if releases == 1 else 1_500_000
+        yield f"N {due + 2_000_000}"
+        yield f"P {control} {releases} 0 {last} {last}"
+    yield "END"
+
+
+def test_the_responses_of_each_activity_are_beside_c_and_r(tmp_path: Path) -> None:
+    trace = write(tmp_path / "trace.txt", trace_map(), list(_releases()))
+    with running(PUMP, "--replay", str(trace)) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        page = pane.page
+        responses = page.get_by_role("table", name=re.compile("^Responses of activities"))
+        ports = responses.get_by_role("row", name="bed.ports")
+        expect(ports).to_contain_text("0 of 0")
+        page.get_by_role("slider", name="Instant").fill("10")
+        cells = ports.get_by_role("cell")
+        expect(cells).to_contain_text(["bed.ports", "100 us", "345 us", "-", "80 us", "1 of 1"])
+        show = responses.get_by_role("row", name="bed.show").get_by_role("img")
+        expect(show).to_have_accessible_name(
+            "Responses of bed.show: 1 of 1 sampled; C 50 us, R 895 us; 1 from 268.5 us to 313.3 us"
+        )
+        assert show.locator("rect.exact").count() == 1
+        assert show.locator("rect.at-most").count() == 0
+        page.get_by_role("slider", name="Instant").fill("55")
+        expect(cells).to_contain_text(["bed.ports", "100 us", "345 us", "-", "80 us", "2 of 2"])
+        drive = responses.get_by_role("row", name="bed.drive")
+        expect(drive).to_contain_text("1.5 ms")
+        expect(drive).to_contain_text("2 of 2")
+        expect(drive.get_by_role("img")).to_have_accessible_name(
+            "Responses of bed.drive: 2 of 2 sampled; C 50 us, R 845 us; "
+            "1 at most 338 us, 1 from 1.437 ms to 1.521 ms"
+        )
+        expect(drive.locator("line.c")).to_be_attached()
+        expect(drive.locator("line.r")).to_be_attached()
+        expect(show.locator("rect.at-most")).to_have_count(0)
+        assert serious(page) == []
         pane.closed(bench.address)
 
 

@@ -9,6 +9,7 @@ import { Word, useBench } from "./parts.js";
 import { get, time } from "./link.js";
 import { Plot } from "./plot.js";
 import { Player, seconds } from "./player.js";
+import { Responses } from "./responses.js";
 
 const PERIOD = 100; // ms, as between two snapshots
 const SHORTEST = 20; // ms between an answer and the next look
@@ -81,6 +82,7 @@ function Node({ of, replay, nodes }) {
       one.name, one.due ?? "-", one.completed, one.misses, one.last_response === null ? "-" : time(one.last_response), time(one.worst_response), time(one.bound),
       one.bound && html`<${Share} of=${one.worst_response / one.bound} />`,
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
+    ${!(replay && of.counted === null) && html`<${Responses} rows=${of.responses} note=${of.responses_note} />`}
     ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
     <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
     ${!replay && html`<p class="remark">${of.overlooked}</p>`}

@@ -18,12 +18,14 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.system.row_responses import rows_of
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked, check
 from ravenchart.command_line import main
 from ravenchart.failures import UNUSABLE, WRONG, Refused, Unusable
 from ravenchart.running import watched_boards
 from ravenchart.running.chart_states import ChartWatch
+from ravenchart.running.live_responses import COUNTED, NOT_COUNTED
 from ravenchart.running.monitored import NOT_FROM_START
 from ravenchart.running.monitoring import given, watching
 from ravenchart.running.watched_boards import NOT_NAMED, SerialLine, WatchedBoard, line_of
@@ -198,6 +200,51 @@ def test_faults_are_counted_before_the_report(checked: Checked, board: Board) ->
         )
         looked(found, 9)
         assert found.node.faults == {"Queue_Overflow": 2, "Overrun": 1}
+
+
+def _job(due: int) -> list[str]:
+    """The records of a release of the pump's `control`: an activity each 100 us."""
+    (control,) = (one for one in check(PUMP).system.processors if one.name == "control")
+    rows = rows_of(control, due // control.period)
+    return [
+        f"T {due + 100_000 * place} Activity {number(row, 'row')} 0"
+        for place, row in enumerate(rows, 1)
+    ]
+
+
+def _estimates(board: WatchedBoard) -> dict[str, tuple[int, int | None]]:
+    """How many upper estimates activities have, and the longest of each, in ns."""
+    return {
+        one.name: (sum(one.at_most), one.longest_at_most)
+        for one in board.responses().rows
+        if one.longest_at_most is not None
+    }
+
+
+def test_releases_of_a_board_are_counted_until_a_line_is_lost(
+    checked: Checked, board: Board
+) -> None:
+    ms = 1_000_000
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, *_job(0), *_job(50 * ms))
+        looked(found, 50 * ms)
+        assert found.responses().note == COUNTED
+        assert _estimates(found)["bed.ports"] == (2, 200_000)
+        board.says("T 1", *_job(100 * ms))
+        looked(found, 100 * ms)
+        assert found.responses().note == NOT_COUNTED
+        assert _estimates(found)["bed.ports"] == (2, 200_000)
+        board.says(*HEAD, *_job(0))  # it starts again
+        assert within(lambda: found.look() and _estimates(found)["bed.ports"][0] == 1)
+        assert found.responses().note == COUNTED
+
+
+def test_of_a_board_that_ran_already_no_release_is_counted(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says(HEAD[1], *_job(200_000_000))  # a release as the first one
+        looked(found, 200_000_000)
+        assert found.responses().note == NOT_COUNTED
+        assert _estimates(found) == {}
 
 
 def test_why_a_controller_ended_is_said(checked: Checked, board: Board) -> None:
