@@ -31,7 +31,7 @@ help:
 	@echo 'make check     style, types, warnings as errors'
 	@echo 'make prove     gnatprove on all records; ONLY="pump", or a group: runtime, examples, models'
 	@echo 'make generate  the examples'' generated/ from their models'
-	@echo 'make bench     figures: waits of a user, generated Ada, runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate), live view'
+	@echo 'make bench     figures: waits of a user, generated Ada, runtime, codecs (beside C), buses, charts, generator, analysis (beside a Rust crate), workbench, live view'
 	@echo 'make bench-proof  does the proof of a chart grow linearly?'
 	@echo 'make mutate    break generated code in small ways: who notices?'
 	@echo 'make mutate-runtime  the same of runtime and HAL; ARGS="--unit queues --all"'

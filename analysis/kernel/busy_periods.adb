@@ -361,6 +361,7 @@ is
       Done := False;
       for Round in 1 .. Most_Rounds loop
          Pass (Period, Wcet, Level, Blocked, Window, Taken, Due, Sum);
+         pragma Assert (Are_Counted (Period, Wcet, Taken, Due, Level));
          if Sum <= Window then
             Done := Window <= Longest;
             return;

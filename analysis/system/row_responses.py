@@ -63,7 +63,7 @@ def _number(processor: Processor, release: int) -> int:
     return release if processor.released_by is None else 0
 
 
-def rows_of(processor: Processor, release: int) -> tuple[str, ...]:
+def rows_executed(processor: Processor, release: int) -> tuple[str, ...]:
     """The activities of a release, which is counted from 0, in the order of their execution."""
     number = _number(processor, release)
     return tuple(s.element for s in processor.slots if number % s.divisor == s.phase)
@@ -76,16 +76,16 @@ def executions_of(processor: Processor, slot: Slot, releases: int) -> int:
     return max(0, -((slot.phase - releases) // slot.divisor))
 
 
-def due(processor: Processor, release: int) -> Ns:
+def due_time(processor: Processor, release: int) -> Ns:
     """When a release of a periodic processor is due, which is counted from 0."""
     return Ns(processor.offset + release * processor.period)
 
 
-def completed(processor: Processor, counts: Releases) -> Ns:
+def completion(processor: Processor, counts: Releases) -> Ns:
     """When the last release that is counted has completed, of a periodic processor."""
     if not counts.releases:
         return BEFORE_ALL
-    return Ns(due(processor, counts.releases - 1) + (counts.last_response or 0))
+    return Ns(due_time(processor, counts.releases - 1) + (counts.last_response or 0))
 
 
 def samples_between(
@@ -98,8 +98,8 @@ def samples_between(
     if after.last_response is None or after.releases <= before.releases:
         return
     last = after.releases - 1
-    at = after.now if after.now is not None else completed(processor, after)
-    rows = rows_of(processor, last)
+    at = after.now if after.now is not None else completion(processor, after)
+    rows = rows_executed(processor, last)
     if rows:
         yield RowSample(rows[-1], after.last_response, True, at)
     if processor.released_by is not None or len(begins) != sum(
@@ -110,14 +110,14 @@ def samples_between(
     expected = [
         (release, row)
         for release in range(before.releases, after.releases)
-        for row in rows_of(processor, release)
+        for row in rows_executed(processor, release)
     ]
     if [one.row for one in begins] != [row for _, row in expected]:
         return
     executed = zip(expected, begins, strict=True)
     for ((release, row), _), ((of_next, _), following) in pairwise(executed):
         if release == of_next:
-            yield RowSample(row, Ns(following.at - due(processor, release)), False, at)
+            yield RowSample(row, Ns(following.at - due_time(processor, release)), False, at)
 
 
 def parts_of(seen: Observation) -> Iterable[Observation]:
@@ -143,7 +143,7 @@ def samples(processor: Processor, seen: Observation) -> Iterator[RowSample]:
     reports = [one for name, one in seen.reports if name.lower() == processor.name.lower()]
     for before, after in pairwise((NO_RELEASES, *reports)):
         first, end = (
-            bisect_right(begins, completed(processor, one), key=lambda one: one.at)
+            bisect_right(begins, completion(processor, one), key=lambda one: one.at)
             for one in (before, after)
         )
         yield from samples_between(processor, before, after, begins[first:end])

@@ -24,12 +24,12 @@ from ravenchart.analysis.system.row_responses import (
     Begin,
     RowHistogram,
     RowSample,
-    completed,
-    due,
+    completion,
+    due_time,
     empty_histograms,
     executions_of,
     processors_of,
-    rows_of,
+    rows_executed,
     samples_between,
 )
 from ravenchart.analysis.system.timing import Analysis
@@ -112,7 +112,7 @@ class _Watched:
         """Sample the releases up to the last report."""
         if self.before is None or self.after is None:
             return
-        first, last = (completed(self.processor, one) for one in (self.before, self.after))
+        first, last = (completion(self.processor, one) for one in (self.before, self.after))
         known = sorted(self.begins, key=lambda one: one.at)
         self.begins.clear()
         self.begins.extend(one for one in known if one.at > last)
@@ -124,13 +124,13 @@ class _Watched:
         """Sample the releases whose records are there, without reports; False: some are not."""
         while self.begins and self.before is not None:
             release = self.before.releases
-            rows = rows_of(self.processor, release)
+            rows = rows_executed(self.processor, release)
             if len(self.begins) < len(rows):
                 break
             job = [self.begins.popleft() for _ in rows]
             if [one.row for one in job] != list(rows):
                 return False
-            start = due(self.processor, release)
+            start = due_time(self.processor, release)
             for one, following in pairwise(job):
                 response = Ns(following.at - start)
                 self._add([RowSample(one.row, response, exact=False, at=following.at)])

@@ -83,12 +83,13 @@ def stolen_time(before: int, after: int) -> int:
 class ControllerProcess:
     """A running controller; its output is read all the time, so it never blocks on it."""
 
-    def __init__(self, executable: Path, trace: Path, core: int, **environment: str) -> None:
+    def __init__(self, executable: Path, trace: Path, core: int, **environment: str | None) -> None:
         """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
 
-        ``environment`` has further variables, such as the address of the bus server. While the
-        process runs, a monitor finds the file of its snapshots beside the executable, and a link
-        to its trace.
+        ``environment`` has further variables, such as the address of the bus server; one that is
+        None is not set. While the process runs, a monitor finds the file of its snapshots beside
+        the executable, and a link to its trace. Where RAVENCHART_MONITOR is None there are no
+        snapshots.
         """
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
@@ -97,11 +98,12 @@ class ControllerProcess:
         if self.snapshots is not None:
             told[snapshots.VARIABLE] = str(self.snapshots)
             live_responses.link_trace(self.snapshots, trace)
+        whole = {**os.environ, **told}
         try:
             self._process = children.popen(
                 [executable.absolute()],
                 core=core,
-                env={**os.environ, **told},
+                env={name: value for name, value in whole.items() if value is not None},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,

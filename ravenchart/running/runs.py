@@ -39,7 +39,7 @@ from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenari
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.stacks.report import Memory
 
-from . import bus_log, expected, judge, plots, result, server, summary, value_plots
+from . import bus_log, expected, judge, plots, result, server, snapshots, summary, value_plots
 from .process import ControllerProcess, Ended, StartError, separate_cores
 from .result import RunOutcome
 
@@ -167,13 +167,15 @@ def run_controller(
     *,
     analysis: Analysis | None = None,
     log: Path | None = None,
+    watched: bool = True,
 ) -> RunOutcome:
     """Run ``executable`` through ``scenario``, for at most ``duration`` seconds.
 
     The controller gets one core for itself where there are two; its trace stays in
-    ``out_dir``. With ``analysis`` the observation is compared with the bounds. Raises
-    ScenarioError, BenchError and TraceError for inputs that cannot be used, before
-    anything runs; a later error is a failure in the result.
+    ``out_dir``. With ``analysis`` the observation is compared with the bounds. Without
+    ``watched`` the controller writes no snapshots. Raises ScenarioError, BenchError and
+    TraceError for inputs that cannot be used, before anything runs; a later error is a
+    failure in the result.
     """
     plan = load_scenario(scenario)
     if plan.bus_events:
@@ -191,7 +193,8 @@ def run_controller(
         )
 
     with bus_log.recorded(log, dbc.stem, executable) as record:
-        return _run(executable, trace_json, out_dir, plan.title, plan, play, analysis)
+        title = plan.title
+        return _run(executable, trace_json, out_dir, title, plan, play, analysis, watched=watched)
 
 
 def run_alone(
@@ -286,6 +289,8 @@ def _run(
     plan: Scenario | None,
     play: Callable[[ControllerProcess, float], ScenarioResult | None],
     analysis: Analysis | None,
+    *,
+    watched: bool = True,
 ) -> RunOutcome:
     """Start the controller, ``play``, stop it, and put everything together."""
     trace_map = read_map(_text(trace_json), trace_json.name)
@@ -293,12 +298,13 @@ def _run(
     trace = (out_dir / "trace.txt").absolute()
     trace.unlink(missing_ok=True)
     grace = analysis.system.shutdown.grace / 1e9 if analysis else DEFAULT_GRACE
+    hidden = {} if watched else {snapshots.VARIABLE: None}
     problems: list[str] = []
     played: ScenarioResult | None = None
     ended = Ended(0, False, False, ())
     with separate_cores() as core:
         try:
-            process = ControllerProcess(executable, trace, core)
+            process = ControllerProcess(executable, trace, core, **hidden)
         except StartError as fault:
             problems.append(str(fault))
         else:

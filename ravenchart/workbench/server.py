@@ -41,8 +41,11 @@ class WorkbenchPages(Pages):
         ]
 
     async def live(self, request: Request) -> Response:
-        """The controllers of the saved model that run now, or those of the replay."""
-        digest = await self.hub.ask(lambda session: session.saved_digest)
+        """The controllers of the saved model that run now, or those of the replay.
+
+        A look does not wait for the thread of the session, which may save for seconds.
+        """
+        digest = self.hub.session.saved_digest
         return JSONResponse(await asyncio.to_thread(self.hub.live.look, digest))
 
     async def diff(self, request: Request) -> Response:

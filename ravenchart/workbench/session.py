@@ -101,8 +101,9 @@ class Session:
 
     @property
     def saved_digest(self) -> str | None:
-        """The digest of the saved model; None where it has errors."""
-        return None if self.saved.analysis is None else self.saved.analysis.system.digest
+        """The digest of the saved model; None where it has errors. Any thread may ask."""
+        analysis = self.saved.analysis  # read once: another thread may save meanwhile
+        return None if analysis is None else analysis.system.digest
 
     @property
     def outside(self) -> tuple[str, ...]:
@@ -217,7 +218,8 @@ class Session:
     def save(self, *, late: bool) -> tuple[str, ...]:
         """Write the files that have changed; their names. `InvalidError` for wrong ones.
 
-        Where a file has changed outside, nothing is written (`ChangeRefusedError`).
+        A file that has changed outside is not overwritten. Where that is seen before the first
+        file is written, nothing is written (`ChangeRefusedError`).
         """
         self._see_outside()
         self._judge(late=late)
@@ -228,17 +230,27 @@ class Session:
             if disk.texts.get(name) == content:
                 continue
             try:
-                _write(Path(name), content)
+                found = _replace(Path(name), content, disk.texts.get(name, b""))
             except OSError as problem:
                 reason = problem.strerror or str(problem)
-                done = f"; written before that: {', '.join(written)}" if written else ""
-                raise ChangeRefusedError(f"cannot write {name}: {reason}{done}") from problem
+                raise self._stopped(f"cannot write {name}: {reason}", written) from problem
+            if found is not None:
+                disk.outside[name] = found
+                raise self._stopped(f"changed on the disk: {name}", written)
             disk.texts[name], disk.stamps[name] = content, _stamp(name)
             written.append(name)
         if written:
             self.saved = self.now
             self.number += 1
         return tuple(written)
+
+    def _stopped(self, reason: str, written: Sequence[str]) -> ChangeRefusedError:
+        """Why a save ended before its last file, and which files were written before."""
+        self.number += 1
+        if not written:
+            return ChangeRefusedError(f"nothing was saved: {reason}")
+        self._see_disk()
+        return ChangeRefusedError(f"{reason}; written before that: {', '.join(written)}")
 
     def _judge(self, *, late: bool) -> None:
         """`InvalidError` where `check` would refuse the files for more than people allow."""
@@ -311,8 +323,11 @@ def _stamp(name: str) -> Stamp:
     return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _write(path: Path, content: bytes) -> None:
-    """Put the content at ``path`` in one step, with the rights that the file had."""
+def _replace(path: Path, content: bytes, known: bytes) -> bytes | None:
+    """Put the content at ``path`` in one step, with the rights that the file had.
+
+    A file that is neither ``known`` nor the content stays as it is: what is in it is returned.
+    """
     real = path.resolve()
     mode = real.stat().st_mode if real.exists() else 0o644
     beside = real.with_name(f".{real.name}.{os.getpid()}")
@@ -322,8 +337,10 @@ def _write(path: Path, content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
+        if (found := _read(str(real))) not in (known, content):
+            return found
         beside.replace(real)
-    except OSError:
+        return None
+    finally:
         with suppress(OSError):
             beside.unlink()
-        raise

@@ -8,14 +8,14 @@ is
    -- Due --
    ---------
 
-   function Due (S : Store; Place : Configuration) return Lists.Length is
+   function Due (S : Store; Active : Configuration) return Lists.Length is
    begin
       for I in 1 .. Lists.Count (S.Kept) loop
-         if Is_Due (S, Place, I) then
+         if Is_Due (S, Active, I) then
             return I;
          end if;
          pragma Loop_Invariant
-           (for all J in 1 .. I => not Is_Due (S, Place, J));
+           (for all J in 1 .. I => not Is_Due (S, Active, J));
       end loop;
       return 0;
    end Due;
@@ -25,12 +25,12 @@ is
    --------------
 
    procedure Take_Due
-     (S     : in out Store;
-      Place : Configuration;
-      Item  : out Event;
-      Taken : out Boolean)
+     (S      : in out Store;
+      Active : Configuration;
+      Item   : out Event;
+      Taken  : out Boolean)
    is
-      Index : constant Lists.Length := Due (S, Place);
+      Index : constant Lists.Length := Due (S, Active);
    begin
       Item  := Null_Event;
       Taken := Index > 0;
@@ -60,18 +60,18 @@ is
       Is_Deferral : Boolean;
       Item        : Event;
       D           : Domain;
-      Place       : Configuration)
+      Active      : Configuration)
    is
       Count : constant Lists.Length := Lists.Count (S.Kept);
    begin
       for N in Event_Name loop
-         if Is_Freed (N, D, Place) then
+         if Is_Freed (N, D, Active) then
             S.Freed (N) := Count;
          end if;
          pragma Loop_Invariant
            (for all M in Event_Name =>
               S.Freed (M) =
-                (if M <= N and then Is_Freed (M, D, Place)
+                (if M <= N and then Is_Freed (M, D, Active)
                  then Count
                  else S.Freed'Loop_Entry (M)));
       end loop;

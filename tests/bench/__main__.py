@@ -24,6 +24,7 @@ from ravenchart.paths import ROOT
 from tests.support.ada_programs import built
 
 from . import buses as bench_buses
+from . import changes as bench_changes
 from . import charts as bench_charts
 from . import codecs as bench_codecs
 from . import commands as bench_commands
@@ -100,6 +101,7 @@ def main() -> None:
     generator()
     large_models()
     bench_timing.main()
+    bench_changes.main()
     bench_viewed.main()
 
 

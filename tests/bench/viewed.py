@@ -1,28 +1,35 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The longest responses of the robot with the tab Live open in a browser, and without."""
+"""Responses of the robot with the tab Live open in a browser, without it, and without snapshots."""
 
 from __future__ import annotations
 
 import tempfile
 from pathlib import Path
 
+from tests.support import live
 from tests.support.browser import CHROMIUM
-from tests.support.viewed_runs import WorkingRobot, side_by_side
+from tests.support.viewed_parts import NoPartError, parts, told
 
 SECONDS = 30.0
-"""Of each run."""
+"""Of each part."""
 
 
 def main() -> None:
-    """Both, side by side."""
-    print("the robot at work, with live view and without (longest responses in us):")
+    """All parts, side by side."""
+    print(f"responses of the robot at work, in us; each part has {SECONDS:.0f} s:")
     if CHROMIUM is None:
         print("  Chromium is missing: `scripts/setup.sh browser` installs it")
         return
-    with tempfile.TemporaryDirectory(prefix="ravenchart-viewed-") as folder:
-        robot = WorkingRobot(Path(folder))
-        viewed, other = (robot.works(SECONDS, view=view) for view in (True, False))
-    for line in side_by_side(viewed, other):
+    with tempfile.TemporaryDirectory(prefix="ravenchart-viewed-") as folder, live.alone():
+        try:
+            lines = told(*parts(Path(folder), SECONDS))
+        except NoPartError as problem:
+            lines = iter([str(problem)])
+    for line in lines:
         print(f"  {line}")
+
+
+if __name__ == "__main__":
+    main()

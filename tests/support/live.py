@@ -24,10 +24,13 @@ def alone() -> Iterator[None]:
         yield
 
 
-def played(play: Callable[[], RunOutcome]) -> RunOutcome:
-    """The outcome of a run; where the host withheld the core and something failed, of another."""
+def played(play: Callable[[], RunOutcome], enough: Callable[[], bool] = lambda: True) -> RunOutcome:
+    """The outcome of a run; where the host withheld the core and something failed, of another.
+
+    A run that passed is repeated where it was not ``enough``.
+    """
     for _ in range(TIMES):
         outcome = play()
-        if outcome.passed or not outcome.not_judged:
+        if enough() if outcome.passed else not outcome.not_judged:
             break
     return outcome

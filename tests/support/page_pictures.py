@@ -15,7 +15,7 @@ from contextlib import chdir, contextmanager
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from ravenchart.paths import ROOT
 from tests.support.browser import BrowserPage, launched
@@ -31,11 +31,11 @@ TRIES = 8
 """So often a picture of it is taken at the most."""
 
 
-def taken(page: Page, name: str) -> None:
-    """Write what the page shows."""
+def taken(page: Page, name: str, part: Locator | None = None) -> None:
+    """Write what the page shows, or a part of it."""
     page.mouse.move(0, 0)
     path = PICTURES / f"{name}.png"
-    with Image.open(io.BytesIO(page.screenshot())) as whole:
+    with Image.open(io.BytesIO((part or page).screenshot())) as whole:
         whole.convert("RGB").save(path, optimize=True)
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1024} KiB")
 
@@ -65,7 +65,7 @@ def workbench(browser: Browser, folder: Path) -> None:
 
 
 def live(browser: Browser, robot: WorkingRobot) -> bool:
-    """The robot moves, and the page shows responses, states and the chart of a joint.
+    """The robot moves: responses, states and the chart of a joint; its bus in another picture.
 
     False where the host has withheld the core from it: a picture should not show that.
     """
@@ -80,6 +80,7 @@ def live(browser: Browser, robot: WorkingRobot) -> bool:
         region.get_by_role("button", name="joint_x.Motion", exact=True).click()
         expect(page.locator(".paper g.active > title", has_text="Cruising")).to_have_count(1)
         taken(page, "live")
+        taken(page, "live_bus", page.get_by_role("region", name="Bus robot_bus"))
         words = region.locator(".word").all_text_contents()
         run.result()
         return words == ["ok"] * 4

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from ravenchart.analysis.system.observed import TraceMap, read_map
-from ravenchart.analysis.system.row_responses import rows_of
+from ravenchart.analysis.system.row_responses import rows_executed
 from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.emit.tables.trace_map import trace_json
 from ravenchart.gen.model.system import Processor
@@ -121,7 +121,7 @@ def random_run(
     for release in range(releases):
         due = processor.offset + release * processor.period
         now = max(now, due) + chance.choice((5, 40, 3_000)) * US
-        rows = rows_of(processor, release)
+        rows = rows_executed(processor, release)
         for row in rows:
             number = known.named(row, "row").number
             records.append((now, f"T {now} Activity {number} 0"))

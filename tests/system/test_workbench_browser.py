@@ -18,7 +18,7 @@ from ravenchart.paths import ROOT
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.can_frames import within
 from tests.support.workbench import Running, running
-from tests.support.workbench_models import hundred_activities
+from tests.support.workbench_speed import SHOWN, hundred, shown
 
 pytestmark = IN_BROWSER
 
@@ -397,16 +397,9 @@ def test_nothing_is_wider_than_the_window(browser: Browser, bench: Running) -> N
 def test_a_change_of_a_hundred_activities_is_on_the_page_soon(
     browser: Browser, tmp_path: Path
 ) -> None:
-    model = tmp_path / "model.yaml"
-    model.write_text(hundred_activities(), encoding="utf-8")
-    with running(model) as bench:
-        pane = Pane(browser, bench.address)
-        taken = []
-        for number in range(10):
-            taken.append(pane.page.evaluate(CHANGE, f"{101 + number} us"))
-        pane.context.close()
+    taken = shown(browser, hundred(tmp_path))
     print(f"median {statistics.median(taken):.0f} ms, longest {max(taken):.0f} ms")
-    assert statistics.median(taken) < 1_000
+    assert statistics.median(taken) < SHOWN
 
 
 def test_a_change_is_drawn_once(pane: Pane) -> None:
@@ -431,20 +424,3 @@ COUNTED = """() => {
   };
 }"""
 """Counts how often a changed state is drawn before its advice."""
-
-CHANGE = """async (value) => {
-  const field = document.querySelector(".declared .times .field:nth-child(2) input");
-  const bound = () => document.querySelector('[data-processor="p20"] .response').textContent;
-  const before = bound();
-  field.focus();
-  field.value = value;
-  field.dispatchEvent(new Event("input", { bubbles: true }));
-  const begin = performance.now();
-  field.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
-  while (bound() === before) {
-    if (performance.now() - begin > 20000) throw new Error(`with ${value} it is still ${before}`);
-    await new Promise((resolve) => requestAnimationFrame(resolve));
-  }
-  return performance.now() - begin;
-}"""
-"""Types a WCET, and waits for the frame that shows another response; the ms between."""

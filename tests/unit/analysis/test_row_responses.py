@@ -17,7 +17,7 @@ from ravenchart.analysis.system.row_responses import (
     RowSample,
     executions_of,
     row_histograms,
-    rows_of,
+    rows_executed,
     samples,
 )
 from ravenchart.analysis.system.timing import analyse
@@ -126,7 +126,7 @@ def test_records_after_the_last_report_are_not_sampled() -> None:
 def test_an_activity_with_a_phase_is_in_other_releases() -> None:
     slots = [replace(one, phase=1) if one.element == "own.rest" else one for one in work().slots]
     shifted = replace(work(), slots=tuple(slots))
-    assert [rows_of(shifted, n) for n in range(2)] == [
+    assert [rows_executed(shifted, n) for n in range(2)] == [
         ("own.Control", "own.toil"),
         ("own.Control", "own.toil", "own.rest"),
     ]
@@ -173,7 +173,7 @@ def test_of_a_processor_that_a_bus_releases_only_last_responses_are_known() -> N
 
 def test_each_release_of_a_sporadic_processor_is_as_the_first_one() -> None:
     sporadic = replace(work(), released_by="link")
-    assert rows_of(sporadic, 1) == ("own.Control", "own.toil", "own.rest")
+    assert rows_executed(sporadic, 1) == ("own.Control", "own.toil", "own.rest")
     assert executions_of(sporadic, sporadic.slots[2], 5) == 5
     assert found(sporadic, of(*RUN)) == [("own.rest", 2.0, True)]
 
@@ -187,7 +187,7 @@ def test_the_releases_of_each_node_count_from_its_own_start() -> None:
         processor = next(
             one for one in system.processors if one.node == node and one.released_by is None
         )
-        begins = [f"B {0.1 * k:.1f} {row}" for k, row in enumerate(rows_of(processor, 0), 1)]
+        begins = [f"B {0.1 * k:.1f} {row}" for k, row in enumerate(rows_executed(processor, 0), 1)]
         start = 5000 + (7 if node == "drive" else 0)
         report = f"P 9 {processor.name} 1 {0.9 if node == 'drive' else 0.8}"
         text = [f"E {start * MS}", *lines(*begins, report, names=names), "END"]

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import shutil
 from pathlib import Path
 
@@ -16,58 +15,16 @@ from ravenchart.analysis.system.observed import read_map
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from tests.support.answers import answered
-from tests.support.trace_events import events_of, well_formed
+from tests.support.trace_events import PUMP, RUN, events_of, lines_of, run_of_the_pump, well_formed
 
-PUMP = ROOT / "examples" / "pump"
 NODES = ROOT / "examples" / "two_nodes"
 PRINTED = pytest.CaptureFixture[str]
 
 
-def lines_of(folder: Path, *told: str, end: bool = True) -> str:
-    """A trace: lines as the controller writes them, but elements and values by their names."""
-    trace_map = read_map((folder / "trace.json").read_text(encoding="utf-8"))
-    found = ["E 1000000", f"M {trace_map.digest}"]
-    for line in told:
-        words = line.split()
-        if words[0] == "T":
-            kinds = {"Activity": "row", "State": "region", "Transition": "region",
-                     "Raised": "event", "Arrived": "port"}  # fmt: skip
-            element = trace_map.named(words[3], kinds[words[2]])
-            values = {"State": element.leaves, "Transition": element.transitions}.get(words[2], ())
-            value = values.index(words[4]) if values else words[4]
-            line = f"T {words[1]} {words[2]} {element.number} {value}"
-        elif words[0] in "PA":
-            element = trace_map.named(words[1], "processor" if words[0] == "P" else "row")
-            line = " ".join((words[0], str(element.number), *words[2:]))
-        found.append(line)
-    return "".join(f"{line}\n" for line in (*found, *(["END"] if end else [])))
-
-
-RUN = (
-    "T 100 Activity bed.Infusion 0",
-    "T 1500 State bed.Infusion Self_Test",
-    "T 1600 State bed.Infusion.Motor Turning",
-    "T 1700 State bed.Infusion.Sensor Listening",
-    "T 20001600 State bed.Infusion.Motor Motor_Good",
-    "T 30000000 Transition bed.Infusion ready",
-    "T 30000100 State bed.Infusion Programming",
-    "T 40000000 Arrived bed.line 1",
-    "T 40000250 Raised bed.Stop 0",
-    "N 100000000",
-    "P hurried 2 1 7000 5000", "A bed.Infusion 6500", "H Overrun 1", "L trace 3", "L ward.sent 9",
-    "L ward.lost_in 2",
-)  # fmt: skip
-
-
 @pytest.fixture
 def trace(tmp_path: Path) -> Path:
-    """The trace of a run of the pump; its most urgent processor is in the P line."""
-    names = json.loads((PUMP / "generated" / "trace.json").read_text(encoding="utf-8"))
-    periodic = [one["element"] for one in names["elements"] if one["kind"] == "processor"][1]
-    told = [line.replace("hurried", periodic) for line in RUN]
-    path = tmp_path / "trace.txt"
-    path.write_text(lines_of(PUMP / "generated", *told), encoding="ascii")
-    return path
+    """The trace of a run of the pump."""
+    return run_of_the_pump(tmp_path)
 
 
 def test_a_run_is_slices_of_states_and_marks(trace: Path, tmp_path: Path, capsys: PRINTED) -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.observed import TraceError
-from ravenchart.running.snapshots import SnapshotFile, parsed_snapshot
+from ravenchart.running.process import ControllerProcess
+from ravenchart.running.snapshots import VARIABLE, SnapshotFile, parsed_snapshot
 from tests.support.snapshot_files import held, number, processors, snapshot, trace_map
 
 
@@ -78,3 +79,19 @@ def test_the_owner_is_the_process_that_holds_the_lock(path: Path) -> None:
     with held(path) as process:
         assert file.owner() == process
     assert file.owner() is None
+
+
+@pytest.mark.parametrize("watched", [True, False])
+def test_a_controller_that_is_not_watched_is_given_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, watched: bool
+) -> None:
+    monkeypatch.setenv(VARIABLE, "inherited")
+    program = tmp_path / "program"
+    program.write_text(f'#!/bin/sh\necho "${{{VARIABLE}-none}}" >&2\n')
+    program.chmod(0o755)
+    hidden = {} if watched else {VARIABLE: None}
+    process = ControllerProcess(program, tmp_path / "trace.txt", 0, **hidden)
+    file = process.snapshots
+    process.runs_for(5.0)
+    assert process.stop(0.0).warnings == (str(file) if watched else "none",)
+    assert (file is not None and file.parent == tmp_path) == watched

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.system.row_responses import rows_of
+from ravenchart.analysis.system.row_responses import rows_executed
 from ravenchart.building import programs
 from ravenchart.building.checking import Checked, check
 from ravenchart.command_line import main
@@ -205,7 +205,7 @@ def test_faults_are_counted_before_the_report(checked: Checked, board: Board) ->
 def _job(due: int) -> list[str]:
     """The records of a release of the pump's `control`: an activity each 100 us."""
     (control,) = (one for one in check(PUMP).system.processors if one.name == "control")
-    rows = rows_of(control, due // control.period)
+    rows = rows_executed(control, due // control.period)
     return [
         f"T {due + 100_000 * place} Activity {number(row, 'row')} 0"
         for place, row in enumerate(rows, 1)

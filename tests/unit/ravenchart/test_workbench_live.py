@@ -5,11 +5,15 @@
 
 from __future__ import annotations
 
+import asyncio
+import json
 import shutil
+import threading
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from starlette.requests import Request
 
 from ravenchart.building import programs
 from ravenchart.building.checking import check
@@ -18,8 +22,12 @@ from ravenchart.failures import UNUSABLE, WRONG
 from ravenchart.paths import ROOT
 from ravenchart.running.monitor_text import overlooked_in_words
 from ravenchart.running.monitored import Overlooked, WatchedValue
+from ravenchart.workbench.hub import Hub
 from ravenchart.workbench.live import LiveView
 from ravenchart.workbench.motion import LastValues
+from ravenchart.workbench.requests import Save
+from ravenchart.workbench.server import WorkbenchPages
+from ravenchart.workbench.session import Session
 from tests.support.recorded import MODEL
 from tests.support.snapshot_files import (
     GENERATED,
@@ -30,7 +38,7 @@ from tests.support.snapshot_files import (
     snapshot,
     trace_map,
 )
-from tests.support.workbench import running
+from tests.support.workbench import PATIENCE, running
 
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 
@@ -75,6 +83,43 @@ def test_what_runs_is_shown_until_it_ends_and_then_kept(model: Path, file: Path)
     ended = live.look(digest)
     assert ended["nodes"][0]["process"] is None and not ended["nodes"][0]["ended"]
     assert "No controller of Infusion_System runs" in ended["text"]
+
+
+def test_a_save_that_takes_long_does_not_hold_up_what_is_shown_live(
+    model: Path, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = Session(model)
+    hub = Hub(session, LiveView(model))
+    pages = WorkbenchPages(hub)
+    begun, ended = threading.Event(), threading.Event()
+
+    def save(*, late: bool) -> tuple[str, ...]:
+        begun.set()
+        ended.wait(PATIENCE)
+        return ()
+
+    monkeypatch.setattr(session, "save", save)
+
+    async def sequences() -> list[int]:
+        saving = asyncio.create_task(hub.act(Save(kind="save", number=session.number, late=False)))
+        await asyncio.to_thread(begun.wait, PATIENCE)
+        found = []
+        try:
+            for number in range(1, 6):
+                file.write_text(snapshot(number, *processors(40)))
+                answer = await asyncio.wait_for(pages.live(Request({"type": "http"})), PATIENCE / 2)
+                found.append(json.loads(bytes(answer.body))["nodes"][0]["sequence"])
+            assert not saving.done()
+        finally:
+            ended.set()
+            await saving
+            await hub.close()
+        return found
+
+    file.write_text(snapshot(1, *processors(40)))
+    with held(file):
+        assert asyncio.run(sequences()) == [1, 2, 3, 4, 5]
+    hub.shut()
 
 
 @pytest.mark.slow

@@ -252,6 +252,78 @@ def test_a_change_outside_is_never_overwritten_unseen(session: Session, folder: 
     assert b"400 us" in path.read_bytes() and b"theirs" not in path.read_bytes()
 
 
+@pytest.fixture
+def both(session: Session, folder: Path) -> tuple[Path, Path]:
+    """The two files that a change is in, in the order in which they are saved."""
+    move(session, "joint_x.ports", "control", 1)
+    time(session, "joint_x.position_control", "wcet", "400 us")
+    names = [name for name in session.now.texts if name in session.diff()]
+    assert names == [str(folder / "model.yaml"), str(folder / "joint.yaml")]
+    return folder / "model.yaml", folder / "joint.yaml"
+
+
+def changed_meanwhile(path: Path, monkeypatch: pytest.MonkeyPatch) -> bytes:
+    """Another program writes to a file while the first file of a save is on its way to the disk."""
+    theirs = path.read_bytes() + b"# theirs\n"
+    written = os.fsync
+
+    def sync(number: int) -> None:
+        written(number)
+        path.write_bytes(theirs)
+        monkeypatch.setattr(os, "fsync", written)
+
+    monkeypatch.setattr(os, "fsync", sync)
+    return theirs
+
+
+def test_a_file_that_changes_while_it_is_saved_is_not_overwritten(
+    session: Session, both: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, joint = both
+    before, names = joint.read_bytes(), sorted(model.parent.iterdir())
+    theirs = changed_meanwhile(model, monkeypatch)
+    with pytest.raises(ChangeRefusedError, match=r"^nothing was saved: changed on the disk: "):
+        session.save(late=False)
+    assert (model.read_bytes(), joint.read_bytes()) == (theirs, before)
+    assert session.outside == (str(model),) and session.dirty
+    assert sorted(model.parent.iterdir()) == names
+
+
+def test_a_file_that_changes_while_another_is_saved_is_not_overwritten(
+    session: Session, both: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, joint = both
+    theirs = changed_meanwhile(joint, monkeypatch)
+    with pytest.raises(ChangeRefusedError) as refused:
+        session.save(late=False)
+    assert str(refused.value) == f"changed on the disk: {joint}; written before that: {model}"
+    assert model.read_bytes() == session.now.texts[str(model)]
+    assert joint.read_bytes() == theirs and session.outside == (str(joint),)
+    session.keep()
+    assert "-# theirs" in session.diff() and str(model) not in session.diff()
+    assert session.save(late=False) == (str(joint),)
+    assert joint.read_bytes() == session.now.texts[str(joint)] and not session.dirty
+
+
+def test_a_file_that_the_model_included_before_is_not_overwritten_unseen(
+    session: Session, folder: Path
+) -> None:
+    """What was read of it is forgotten with the model that no longer includes it."""
+    model, types = folder / "model.yaml", folder / "types.yaml"
+    whole, old = model.read_bytes(), types.read_bytes()
+    model.write_bytes(whole.replace(b"include: [types.yaml, ", b"include: [new.yaml, "))
+    types.rename(folder / "new.yaml")
+    assert settled(session) and session.now.analysis is not None
+    types.write_bytes(b"# theirs\n")
+    session.step(-1)
+    with pytest.raises(ChangeRefusedError, match=r"changed on the disk: .*types.yaml"):
+        session.save(late=False)
+    assert types.read_bytes() == b"# theirs\n"
+    session.keep()
+    session.save(late=False)
+    assert types.read_bytes() == old and model.read_bytes() == whole
+
+
 @pytest.mark.slow
 def test_what_changed_outside_can_be_taken_and_the_changes_here_had_back(
     session: Session, folder: Path
