@@ -11,6 +11,7 @@ is
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection
    with
+     Pre => Now /= Passing,
      Post =>
        Is_Selection (Selected_Motor'Result, Motor_Transition'First,
           Motor_Transition'Last, Self, Now, Ins, Item)
@@ -30,6 +31,7 @@ is
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection
    with
+     Pre => Now /= Passing,
      Post =>
        Is_Selection (Selected_Sensor'Result, Sensor_Transition'First,
           Sensor_Transition'Last, Self, Now, Ins, Item)
@@ -49,6 +51,7 @@ is
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Selection
    with
+     Pre => Now /= Passing,
      Post =>
        Is_Selection (Selected_Top'Result, Top_Transition'First,
           Top_Transition'Last, Self, Now, Ins, Item)
@@ -122,15 +125,6 @@ is
          when Expiry_Of_Remind =>
             return
               (if Enabled (Remind, Self, Now, Ins, Item) then Remind
-               else None);
-         when Passing =>
-            return
-              (if Enabled (Restore_Where_It_Was, Self, Now, Ins, Item)
-                  then Restore_Where_It_Was
-               elsif Enabled (Default_Of_Where_It_Was, Self, Now, Ins, Item)
-                  then Default_Of_Where_It_Was
-               elsif Enabled (Go_On, Self, Now, Ins, Item) then Go_On
-               elsif Enabled (Not_Yet, Self, Now, Ins, Item) then Not_Yet
                else None);
          when Conditions =>
             return

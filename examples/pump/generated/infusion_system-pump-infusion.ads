@@ -483,7 +483,9 @@ is
    function Choose
      (Self : Region; Now : Occurrence; Ins : Inputs; Item : Event)
      return Choice
-   with Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
+   with
+     Pre => Now /= Passing,
+     Post => Is_Choice (Choose'Result, Self, Now, Ins, Item);
    --  The transitions selected for one occurrence.
 
    function Is_Of_Choice
@@ -673,7 +675,9 @@ is
       Fired : out Firings.List)
    with
      Pre =>
-       Is_Kept (Self) and then (Now = Start_Of_Region) = not Self.Started,
+       Is_Kept (Self)
+       and then (Now = Start_Of_Region) = not Self.Started
+       and then Now /= Passing,
      Post =>
        Self.Started
        and then Is_Kept (Self)

@@ -6,7 +6,9 @@ package body Qhsm_Test.Qhsm.Chart
 with SPARK_Mode
 is
    function Selected (Self : Region; Now : Occurrence) return Selection
-   with Post => Is_Selection (Selected'Result, Self, Now)
+   with
+     Pre => Now /= Passing,
+     Post => Is_Selection (Selected'Result, Self, Now)
    is
    begin
       case Now is
@@ -53,12 +55,6 @@ is
             return
               (if Enabled (S211_H, Self, Now) then S211_H
                elsif Enabled (S11_H, Self, Now) then S11_H
-               else None);
-         when Passing =>
-            return
-              (if Enabled (S21_Init, Self, Now) then S21_Init
-               elsif Enabled (S1_Init, Self, Now) then S1_Init
-               elsif Enabled (S_Init, Self, Now) then S_Init
                else None);
          when others =>
             return None;

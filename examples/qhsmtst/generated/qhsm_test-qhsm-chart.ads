@@ -195,7 +195,8 @@ is
    procedure Step
      (Self : in out Region; Now : Occurrence; Fired : out Firings.List)
    with
-     Pre => (Now = Start_Of_Region) = not Self.Started,
+     Pre =>
+       (Now = Start_Of_Region) = not Self.Started and then Now /= Passing,
      Post =>
        Self.Started
        and then (if Fired.Count = 0 then Self.Leaf = Self.Leaf'Old)

@@ -99,7 +99,7 @@ def operations(shape: RegionShape) -> list[Decl]:
                 Param("Fired", "out", fired),
             ),
             aspects=(
-                Aspect("Pre", both(*safety.kept(), due)),
+                Aspect("Pre", both(*safety.kept(), due, *shape.begins)),
                 Aspect("Post", both(ref("Self.Started"), *safety.kept(), *_stepped(shape))),
             ),
         ),

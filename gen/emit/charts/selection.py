@@ -115,19 +115,21 @@ def _name(shape: RegionShape, region: RegionId) -> str:
 
 
 def _selected(shape: RegionShape, region: RegionId) -> Subprogram:
-    """The first enabled transition of a region."""
+    """The first enabled transition of a region. Segments are none: `_segments` has them."""
     own = [f for f in shape.firings if f.region == region]
     none = Return(ref("None"))
     rows: list[tuple[Choice | str, tuple[Stmt, ...]]] = []
     for occurrence in shape.occurrences():
-        if asked := [f for f in own if occurrence in shape.triggers(f)]:
+        asked = [f for f in own if occurrence in shape.triggers(f)]
+        if asked and occurrence != PASSING:
             rows.append((occurrence, (Return(_first(shape, asked)),)))
     name = _name(shape, region)
+    pre = (Aspect("Pre", one) for one in shape.begins)
     return Subprogram(
         name,
         shape.situation,
         "Selection",
-        aspects=(Aspect("Post", is_selected(shape, result(name), region)),),
+        aspects=(*pre, Aspect("Post", is_selected(shape, result(name), region))),
         body=(case_of(ref("Now"), [*rows, (OTHERS, (none,))]) if rows else none,),
     )
 

@@ -104,9 +104,10 @@ def declared_choice(shape: RegionShape) -> list[Decl]:
     params = shape.situation
     chosen = Call("Is_Choice", (Arg(None, result("Choose")), *shape.situation_args()))
     choice = Param("C", "in", "Choice")
+    pre = (Aspect("Pre", one) for one in shape.begins)
     ghost = (Aspect("Ghost"),)
     return [
-        Subprogram("Choose", params, "Choice", aspects=(Aspect("Post", chosen),)),
+        Subprogram("Choose", params, "Choice", aspects=(*pre, Aspect("Post", chosen))),
         Comment("The transitions selected for one occurrence."),
         Subprogram(
             _IS_OF,

@@ -14,6 +14,7 @@ from ravenchart.gen.emit.ada.expressions import (
     FALSE,
     Arg,
     Expr,
+    OperatorChain,
     StringLiteral,
     both,
     call,
@@ -345,6 +346,11 @@ class RegionShape(Configurations):
     def passes(self) -> bool:
         """Are there choices or histories?"""
         return any(p.kind in PASSED for p in self.region.pseudostates)
+
+    @property
+    def begins(self) -> tuple[Expr, ...]:
+        """That a step begins, where one may also go on from a choice or history."""
+        return (OperatorChain("/=", (ref("Now"), ref(PASSING))),) if self.passes else ()
 
     def occurrences(self) -> tuple[str, ...]:
         """All occurrences of the region."""
