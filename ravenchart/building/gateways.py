@@ -63,7 +63,7 @@ def build(
     the program without the gateway. Raises as `Program.build`.
     """
     memory = stacks.kept(program.build(MODE, gateway.driver, warn=warn, board=board, tell=tell))
-    home = program.home(gateway.driver, board.target.name) / "gateway"
+    home = program.home(gateway.driver, board.place) / "gateway"
     home.mkdir(parents=True, exist_ok=True)
     main = f"{ada_case(program.checked.system.name)}_Main"
     places = file_of(board.target.name).parent / "gateway", ROOT / "hw_can" / "drivers" / "serial"
@@ -77,7 +77,7 @@ def build(
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
     variables = {
-        **program.scenario(MODE, gateway.driver, board.target.name),
+        **program.scenario(MODE, gateway.driver, board.place),
         **board.scenario(),
     }
     options = [*board.options(), "-p", "-q", "-j0", "-P", "gateway.gpr"]

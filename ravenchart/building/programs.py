@@ -133,23 +133,22 @@ class Program:
     ) -> Compilation:
         """How `build` calls gprbuild. Refused as there."""
         target = board.target if board else targets.target(NATIVE)
+        where = board.place if board else NATIVE
         chosen = driver or default_driver(self.checked, target)
         check_driver(self.checked, chosen, target)
         if registers == HARDWARE:
             self._check_addresses()
         variables = {
-            **self.scenario(mode, chosen, target.name),
+            **self.scenario(mode, chosen, where),
             "RAVENCHART_REGISTERS": registers,
         }
         options = ["-p", "-q", "-j0", "-P", self.project.name]
         if board:
             variables |= board.scenario()
             options = [*board.options(), *options]
-        options += ["-cargs:Ada", stacks.CALL_GRAPHS]
-        if not board:
-            options += ["-largs", f"-Wl,--defsym={stacks.PUT_ALL}={stacks.put_all(self.part)}"]
-        options.append("-gargs")
-        image = self.home(chosen, target.name) / mode / f"{self.checked.stem}_main"
+        report = f"-Wl,--defsym={stacks.PUT_ALL}={stacks.put_all(self.part)}"
+        options += ["-cargs:Ada", stacks.CALL_GRAPHS, "-largs", report, "-gargs"]
+        image = self.home(chosen, where) / mode / f"{self.checked.stem}_main"
         return Compilation(tuple(options), self.project.parent, variables, image)
 
     def last_build(self) -> Memory | None:

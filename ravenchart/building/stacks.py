@@ -29,7 +29,7 @@ from ravenchart.stacks.longest import LIBRARY, Depths, Rules, StackBound
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
 from ravenchart.tools import children
 
-from .targets import Target, file_of
+from .targets import KnownFrame, Target, file_of
 
 CALL_GRAPHS = "-fcallgraph-info=su,da"
 """With it the compiler writes a call graph with frames beside each object."""
@@ -216,13 +216,12 @@ def _graph(made: BuiltProgram) -> graph.Graph:
 
 def _rules(made: BuiltProgram, linked: frozenset[str]) -> Rules:
     facts = made.target.facts.stacks
-    given = tomllib.loads(FRAMES.read_text("utf-8"))
+    ours = tomllib.loads(FRAMES.read_text("utf-8"))
+    given = {name: KnownFrame.model_validate(one) for name, one in ours.items()} | facts.frames
     regions = [r for c in made.system.components for r in c.regions]
     timers = max((_timers(r.transitions) for r in regions), default=0)
     bounds = {
-        name: StackBound(
-            one.get("bytes", 0) + timers * one.get("timer", 0), one["why"], one.get("depth", 1)
-        )
+        name: StackBound(one.bytes + timers * one.timer, one.why, one.depth)
         for name, one in given.items()
     }
     return Rules(facts.library, bounds, facts.pointers, linked, ENDINGS)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 import shutil
@@ -90,6 +91,15 @@ class InterruptStack(_Form):
     frame: int = Field(ge=0)
 
 
+class KnownFrame(_Form):
+    """A bound for a frame, or a recursion, that the compiler has none for: see frames.toml."""
+
+    why: str
+    bytes: int = Field(default=0, ge=0)
+    timer: int = Field(default=0, ge=0)
+    depth: int = Field(default=1, ge=1)
+
+
 class Interrupted(_Form):
     """The stack that an interrupt takes of its task: a frame, and the calls from there."""
 
@@ -105,6 +115,7 @@ class Stacks(_Form):
     environment: tuple[str, str] | None = None
     on_end: tuple[str, ...] = ()
     pointers: dict[str, tuple[str, ...]] = {}
+    frames: dict[str, KnownFrame] = {}
     interrupts: InterruptStack | None = None
 
 
@@ -139,6 +150,17 @@ class Board:
     rts: Path
     clock_rate: int
 
+    @property
+    def place(self) -> str:
+        """The name of folders for its objects: they differ where its run-time library does.
+
+        gprbuild does not link again where only that has changed.
+        """
+        library = hashlib.sha256()
+        for archive in sorted((self.rts / "adalib").glob("*.a")):
+            library.update(archive.read_bytes())
+        return f"{self.target.name}-{library.hexdigest()[:8]}"
+
     def options(self) -> list[str]:
         """The options of gprbuild."""
         tools = ["--db", str(COMPILERS), f"--target={self.compiler}", f"--RTS={self.rts}"]
@@ -149,7 +171,7 @@ class Board:
         return {
             "RAVENCHART_TARGET": self.target.name,
             "RAVENCHART_RUN_TIME": self.target.facts.run_time,
-            "RAVENCHART_OBJECTS": str(work() / "obj" / self.target.name),
+            "RAVENCHART_OBJECTS": str(work() / "obj" / self.place),
         }
 
 

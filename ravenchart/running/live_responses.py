@@ -14,7 +14,6 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
 from ravenchart import rounded
@@ -25,11 +24,9 @@ from ravenchart.analysis.system.row_responses import (
     RowHistogram,
     RowSample,
     completion,
-    due_time,
     empty_histograms,
     executions_of,
     processors_of,
-    rows_executed,
     samples_between,
 )
 from ravenchart.analysis.system.timing import Analysis
@@ -51,14 +48,6 @@ HEAD = 64
 NO_TRACE = (
     "Only the last activity of a release has samples, one of each snapshot at most: the trace of "
     "this controller is not at hand."
-)
-COUNTED = (
-    "A board reports completions only at the end of a run. Until then releases are counted from "
-    "its start, so there are upper estimates only."
-)
-NOT_COUNTED = (
-    "No sample is added: the board ran already, or lines were lost. Releases are counted from the "
-    "start of the board."
 )
 
 
@@ -120,23 +109,6 @@ class _Watched:
         self._add(samples_between(self.processor, self.before, self.after, there))
         self.before, self.after = self.after, None
 
-    def count(self) -> bool:
-        """Sample the releases whose records are there, without reports; False: some are not."""
-        while self.begins and self.before is not None:
-            release = self.before.releases
-            rows = rows_executed(self.processor, release)
-            if len(self.begins) < len(rows):
-                break
-            job = [self.begins.popleft() for _ in rows]
-            if [one.row for one in job] != list(rows):
-                return False
-            start = due_time(self.processor, release)
-            for one, following in pairwise(job):
-                response = Ns(following.at - start)
-                self._add([RowSample(one.row, response, exact=False, at=following.at)])
-            self.before = replace(self.before, releases=release + 1)
-        return True
-
     def _add(self, found: Iterable[RowSample]) -> None:
         for one in found:
             self.histograms[one.row].add(one)
@@ -171,8 +143,6 @@ class LiveResponses:
             if one.processor.released_by is None
             for slot in one.processor.slots
         }
-        self.gaps = False
-        """Whether records are missing, so that releases are counted no more."""
 
     def take(self, line: str) -> None:
         """Take a line of the trace; ValueError says what is wrong with it."""
@@ -198,11 +168,6 @@ class LiveResponses:
         """When the last report was read whose releases are sampled, in time of the controller."""
         reports = [one.before for one in self._watched.values() if one.before is not None]
         return max((one.now for one in reports if one.now is not None), default=NO_TIME)
-
-    def count(self) -> None:
-        """Sample without reports, as a board has none, unless there are ``gaps``."""
-        if not self.gaps:
-            self.gaps = not all([one.count() for one in self._watched.values()])
 
     def shown(self) -> list[RowHistogram]:
         """All activities, in the order of the tables."""

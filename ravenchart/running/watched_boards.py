@@ -22,6 +22,7 @@ from typing import Any
 
 import serial
 
+from ravenchart import rounded
 from ravenchart.analysis.system.observed import (
     TRACE,
     Observation,
@@ -35,7 +36,7 @@ from ravenchart.building.checking import Checked
 from ravenchart.failures import Unusable
 from ravenchart.gen.language.terms import NO_TIME, Ns
 
-from .live_responses import COUNTED, NOT_COUNTED, LiveResponses, LiveRows
+from .live_responses import LiveResponses, LiveRows
 from .monitored import LISTED, NO_COUNTS
 from .snapshots import KINDS, RECENT, Snapshot, Tally
 from .traces.reports import BEGIN, SAID
@@ -67,7 +68,7 @@ NAMED = re.compile(r"M [0-9a-f]{64}")
 """The line that names a model."""
 NO_COUNTS_YET = (
     "processors, queues of charts, and faults that a CAN controller counts: a board reports them "
-    "at the end of a run"
+    "each second, that of an older Ravenchart at the end of a run only"
 )
 
 
@@ -195,7 +196,8 @@ class _Counted:
                 self.last = max(self.last, record.time)
                 if record.kind in LISTED:
                     self.listed.append(record)
-                if (fault := record.fault) is not None:  # counted here until the report does
+                fault = record.fault
+                if fault is not None and not self.seen.processors:  # else its reports count it
                     self.seen.faults[fault] = 1 + self.seen.faults.get(fault, 0)
 
     def snapshot(self, number: int) -> Snapshot:
@@ -213,7 +215,7 @@ class WatchedBoard(WatchedController):
         """Unusable where the line cannot be opened."""
         super().__init__(checked, program)
         self._counted: _Counted | None = None
-        self._responses = self._no_responses()
+        self._responses = self._no_responses(whole=False)
         self._line = line
         self._reader = _Reader(line)
         self._next = float("inf")
@@ -224,14 +226,13 @@ class WatchedBoard(WatchedController):
         self._reader.close()
 
     def responses(self) -> LiveRows:
-        """Counted from the start of the board, until a record is missing."""
-        self._responses.count()
-        whole = self._counted is not None and not self._counted.partial
-        known = whole and not self._responses.gaps
-        return LiveRows(self._responses.shown(), COUNTED if known else NOT_COUNTED)
+        """From its lines, up to the report before the last one."""
+        until = rounded.instant(self._responses.until)
+        note = f"From the reports of the board, one each second, up to {until} s."
+        return LiveRows(self._responses.shown(), note)
 
-    def _no_responses(self) -> LiveResponses:
-        return LiveResponses(self.checked.analysis, self.map, whole=True)
+    def _no_responses(self, *, whole: bool) -> LiveResponses:
+        return LiveResponses(self.checked.analysis, self.map, whole=whole)
 
     @property
     def has_ended(self) -> bool:
@@ -276,12 +277,12 @@ class WatchedBoard(WatchedController):
         if starts or (self._counted is None and NAMED.fullmatch(line)):
             self.begin(Ns(time.monotonic_ns()), listed=0)
             self._counted = _Counted(self.map, partial=not starts)
-            self._responses = self._no_responses()
+            self._responses = self._no_responses(whole=starts)
         if self._counted is None or not line:
             return
         try:
             self._counted.take(line)
-            if not self._counted.partial and not line.startswith(SAID):
+            if not line.startswith(SAID):
                 self._responses.take(line)
         except ValueError:
             self._lose(1)
@@ -297,7 +298,6 @@ class WatchedBoard(WatchedController):
         assert self._counted is not None
         counts = self._counted.seen.counts
         if number:
-            self._responses.gaps = True
             counts[UNREADABLE] = counts.get(UNREADABLE, 0) + number
 
     def _say_what_is_missing(self) -> None:

@@ -143,6 +143,10 @@ def test_three_runs_are_the_same_bytes(tmp_path: Path, capsys: pytest.CaptureFix
         traces.append((tmp_path / str(number) / "serial.txt").read_bytes())
     assert len(traces[0].splitlines()) > 1_000
     assert traces[0] == traces[1] == traces[2]
+    lines = traces[0].decode("ascii").splitlines()
+    reports = [int(line.split()[1]) // 10**9 for line in lines if line.startswith("N ")]
+    assert reports == [1, 2]  # one each second, the last one at the end
+    assert len([line for line in lines if line.startswith("P ")]) == 2 * 3
 
 
 def busy(home: Path, turns: int) -> None:

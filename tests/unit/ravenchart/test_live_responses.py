@@ -84,29 +84,6 @@ def test_a_trace_that_is_read_from_its_middle_counts_from_the_next_report_on() -
         assert sum(one.exact) == sum(all_of_it.exact) - sum(before.exact)
 
 
-def test_releases_are_counted_where_no_report_comes() -> None:
-    found = live()
-    for line in lines(*JOBS):
-        found.take(line)
-    found.count()
-    assert not found.gaps
-    assert counts(found.shown()) == {
-        "own.Control": (0, 2, 2), "own.toil": (0, 1, 2), "own.rest": (0, 0, 1),
-    }  # fmt: skip
-    for line in [*lines("B 20.1 own.Control", "P 35 work 4 1.5"), "END"]:
-        found.take(line)
-    assert counts(found.shown())["own.toil"] == (1, 1, 4)
-
-
-def test_a_missing_record_ends_the_counting() -> None:
-    found = live()
-    for line in lines(*JOBS[:1], *JOBS[2:], "B 20.1 own.Control", "B 21 own.toil", "B 22 own.rest"):
-        found.take(line)
-    found.count()
-    assert found.gaps
-    assert counts(found.shown())["own.Control"] == (0, 0, 0)
-
-
 # --- The trace of a process -------------------------------------------------------------------
 
 

@@ -187,3 +187,16 @@ def test_what_is_built_for_a_target_has_a_place_of_its_own() -> None:
     here = programs.build_home(checked, "loopback")
     there = programs.build_home(checked, "loopback", "zynqmp")
     assert there == here.with_name(f"{here.name}-zynqmp")
+
+
+def test_objects_for_another_run_time_library_have_another_place(tmp_path: Path) -> None:
+    library = tmp_path / "adalib" / "libgnarl.a"
+    library.parent.mkdir()
+    library.write_bytes(b"!<arch>\n")
+    board = targets.Board(targets.target("zynqmp"), "aarch64-elf", tmp_path, 10**8)
+    before, objects = board.place, board.scenario()["RAVENCHART_OBJECTS"]
+    assert board.place == before
+    library.write_bytes(b"!<arch>\nchanged")
+    assert board.place != before
+    assert board.place.startswith("zynqmp-")
+    assert board.scenario()["RAVENCHART_OBJECTS"] != objects

@@ -25,7 +25,6 @@ from ravenchart.command_line import main
 from ravenchart.failures import UNUSABLE, WRONG, Refused, Unusable
 from ravenchart.running import watched_boards
 from ravenchart.running.chart_states import ChartWatch
-from ravenchart.running.live_responses import COUNTED, NOT_COUNTED
 from ravenchart.running.monitored import NOT_FROM_START
 from ravenchart.running.monitoring import given, watching
 from ravenchart.running.watched_boards import NOT_NAMED, SerialLine, WatchedBoard, line_of
@@ -212,39 +211,63 @@ def _job(due: int) -> list[str]:
     ]
 
 
-def _estimates(board: WatchedBoard) -> dict[str, tuple[int, int | None]]:
-    """How many upper estimates activities have, and the longest of each, in ns."""
+def _report(now: int, releases: int, last: int) -> list[str]:
+    """What the board reports each second, of `control` alone."""
+    return [HEAD[1], f"N {now}", f"P {number('control', 'processor')} {releases} 0 {last} {last}"]
+
+
+def _responses(board: WatchedBoard) -> dict[str, tuple[int, int, int]]:
+    """The exact responses, upper estimates and executions of activities that have any."""
     return {
-        one.name: (sum(one.at_most), one.longest_at_most)
+        one.name: (sum(one.exact), sum(one.at_most), one.executions)
         for one in board.responses().rows
-        if one.longest_at_most is not None
+        if one.executions
     }
 
 
-def test_releases_of_a_board_are_counted_until_a_line_is_lost(
+MS = 1_000_000
+FIRST = [*_job(0), *_job(50 * MS)]
+"""The releases before the first report."""
+SECOND = [*_job(100 * MS), *_job(150 * MS)]
+
+
+def test_the_responses_of_a_board_are_those_of_its_reports(checked: Checked, board: Board) -> None:
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, *FIRST, *_report(60 * MS, 2, MS), *SECOND, *_report(160 * MS, 4, MS))
+        assert within(lambda: found.look() and _responses(found).get("bed.ports") == (0, 2, 2))
+        assert found.node.processors[-1].completed == 4
+        board.says(*_report(161 * MS, 4, MS))  # until then a record might follow
+        assert within(lambda: found.look() and _responses(found).get("bed.ports") == (0, 4, 4))
+        assert sum(exact for exact, _, _ in _responses(found).values()) == 2
+        assert "up to 0.160 s" in found.responses().note
+        board.says(*HEAD, *FIRST, *_report(60 * MS, 2, MS))  # it starts again
+        assert within(lambda: found.look() and not _responses(found))
+
+
+def test_where_a_line_is_lost_only_responses_that_are_reported_are_shown(
     checked: Checked, board: Board
 ) -> None:
-    ms = 1_000_000
     with watched(checked, board.port) as found:
-        board.says(*HEAD, *_job(0), *_job(50 * ms))
-        looked(found, 50 * ms)
-        assert found.responses().note == COUNTED
-        assert _estimates(found)["bed.ports"] == (2, 200_000)
-        board.says("T 1", *_job(100 * ms))
-        looked(found, 100 * ms)
-        assert found.responses().note == NOT_COUNTED
-        assert _estimates(found)["bed.ports"] == (2, 200_000)
-        board.says(*HEAD, *_job(0))  # it starts again
-        assert within(lambda: found.look() and _estimates(found)["bed.ports"][0] == 1)
-        assert found.responses().note == COUNTED
+        board.says(*HEAD, *FIRST[1:], *_report(60 * MS, 2, MS), *SECOND, *_report(160 * MS, 4, MS))
+        board.says(*_report(161 * MS, 4, MS))
+        assert within(lambda: found.look() and _responses(found).get("bed.ports") == (0, 2, 4))
 
 
-def test_of_a_board_that_ran_already_no_release_is_counted(checked: Checked, board: Board) -> None:
+def test_of_a_board_that_ran_already_the_first_report_is_the_begin(
+    checked: Checked, board: Board
+) -> None:
     with watched(checked, board.port) as found:
-        board.says(HEAD[1], *_job(200_000_000))  # a release as the first one
-        looked(found, 200_000_000)
-        assert found.responses().note == NOT_COUNTED
-        assert _estimates(found) == {}
+        board.says(*FIRST[1:], *_report(60 * MS, 2, MS), *SECOND, *_report(160 * MS, 4, MS))
+        board.says(*_report(161 * MS, 4, MS))
+        assert within(lambda: found.look() and _responses(found).get("bed.ports") == (0, 2, 2))
+
+
+def test_a_fault_that_is_reported_is_counted_once(checked: Checked, board: Board) -> None:
+    fault = f"T 7 Fault {number('bed.Keys', 'region')} 2"
+    with watched(checked, board.port) as found:
+        board.says(*HEAD, fault, *_report(8, 0, 0), "H Queue_Overflow 2", fault)
+        looked(found, 8)
+        assert within(lambda: found.look() and found.node.faults == {"Queue_Overflow": 2})
 
 
 def test_why_a_controller_ended_is_said(checked: Checked, board: Board) -> None:
