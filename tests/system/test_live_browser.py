@@ -205,6 +205,38 @@ def test_the_bus_of_a_shell_is_shown_until_it_ends_and_then_that_of_the_next_one
         pane.closed(bench.address)
 
 
+def test_both_nodes_of_a_run_are_shown_with_their_bus(tmp_path: Path) -> None:
+    model = Path(shutil.copytree(ROOT / "examples" / "two_nodes", tmp_path / "two")) / "model.yaml"
+    with running(model) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        run = subprocess.Popen(
+            [LAUNCHER, "run", model, "--seconds", "20"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        )  # fmt: skip
+        try:
+            nodes = [
+                pane.page.get_by_role("region", name=f"Controller of {name}")
+                for name in ("panel", "drive")
+            ]
+            for node in nodes:
+                expect(node.locator("h3")).to_contain_text("snapshot", timeout=60_000)
+                first = node.locator("h3").text_content() or ""
+                expect(node.locator("h3")).not_to_have_text(first)
+                expect(node.get_by_role("img").first).to_have_accessible_name(
+                    re.compile("^Responses of .*: [1-9]")
+                )
+            bus = pane.page.get_by_role("region", name="Bus ")
+            expect(bus.first.locator("h3")).to_contain_text("bus of a run, ")
+            assert serious(pane.page) == []
+        finally:
+            said, _ = run.communicate()
+        assert run.returncode == 0, said
+        for node in nodes:
+            expect(node.locator("h3")).to_contain_text("ended in order")
+        pane.closed(bench.address)
+
+
 def test_a_bus_is_shown_with_its_load_and_the_last_values() -> None:
     """The bus of a board: no controller of the model runs on this machine."""
     server = BusServer()

@@ -80,10 +80,14 @@ def test_a_row_is_dragged_to_another_processor_saved_and_its_comment_kept(
 ) -> None:
     page = pane.page
     before = pane.bound("trajectory").text_content()
+    on = page.locator(".components .declared", has_text="Monitoring").get_by_role("button")
+    on = on.filter(has_text="joint_x").locator(".on")
+    expect(on).to_have_text("control")
     target = pane.row("joint_y.trajectory_step")
     pane.row("joint_x.Monitoring").drag_to(target, target_position={"x": 20, "y": 3})
     expect(pane.bound("trajectory")).not_to_have_text(before or "")
     expect(pane.bound("trajectory")).to_contain_text("saved 865 us")
+    expect(on).to_have_text("trajectory")
     expect(page.locator('[data-processor="trajectory"] .row .name')).to_have_text([
         "joint_x.trajectory_step", "joint_x.Monitoring", "joint_y.trajectory_step",
         "joint_z.trajectory_step",
