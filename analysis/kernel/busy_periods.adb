@@ -36,19 +36,6 @@ is
        Due >= Window and then Is_Counted (Period, Wcet, Taken, Due);
    --  Count those within Window.
 
-   procedure Take_One
-     (Period, Wcet : Times;
-      J            : Task_Number;
-      Window       : Ticks;
-      Taken, Due   : in out Times)
-   with
-     Pre  =>
-       Are_Plain (J, Period, Wcet)
-       and then Window in 1 .. Limit
-       and then Are_Counted (Period, Wcet, Taken, Due, J - 1),
-     Post => Are_Counted (Period, Wcet, Taken, Due, J);
-   --  Count the releases of task J besides those of the tasks before it.
-
    procedure Take_In
      (Period, Wcet : Times;
       Before       : Task_Count;
@@ -74,11 +61,15 @@ is
        J <= Level
        and then Are_Plain (Level, Period, Wcet)
        and then Window in 1 .. Limit
-       and then Are_Counted (Period, Wcet, Taken, Due, Level),
+       and then
+         (for all K in 1 .. Level =>
+            (if K /= J then
+               Is_Counted (Period (K), Wcet (K), Taken (K), Due (K)))),
      Post =>
        Due (J) >= Window
        and then Are_Counted (Period, Wcet, Taken, Due, Level);
-   --  Count the releases of task J anew.
+   --  Count the releases of task J, anew or for the first time, besides those
+   --  of the other tasks.
 
    procedure Pass
      (Period, Wcet : Times;
@@ -262,24 +253,6 @@ is
       pragma Assert (Due / Period = Releases);
    end Count_Releases;
 
-   --------------
-   -- Take_One --
-   --------------
-
-   procedure Take_One
-     (Period, Wcet : Times;
-      J            : Task_Number;
-      Window       : Ticks;
-      Taken, Due   : in out Times)
-   is
-      Taken_Before : constant Times := Taken with Ghost;
-      Due_Before   : constant Times := Due with Ghost;
-   begin
-      Count_Releases (Period (J), Wcet (J), Window, Taken (J), Due (J));
-      Prove_Replaced
-        (Period, Wcet, Taken_Before, Due_Before, Taken, Due, J, J);
-   end Take_One;
-
    -------------
    -- Take_In --
    -------------
@@ -293,7 +266,7 @@ is
    is
    begin
       for J in Before + 1 .. Level loop
-         Take_One (Period, Wcet, J, Window, Taken, Due);
+         Renew (Period, Wcet, J, J, Window, Taken, Due);
          pragma Loop_Invariant (Are_Counted (Period, Wcet, Taken, Due, J));
       end loop;
    end Take_In;

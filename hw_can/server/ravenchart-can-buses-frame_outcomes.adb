@@ -68,7 +68,7 @@ is
    procedure Arbitrate
      (B      : Bus;
       S      : Segment;
-      Now     : Nanoseconds;
+      Now    : Nanoseconds;
       Offers : Offer_List;
       Roles  : out Role_List;
       Winner : out Node_Index;

@@ -51,7 +51,7 @@ is
    procedure Carry
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Fault  : Bus_Faults.Fault;
       Roles  : Role_List;
@@ -112,7 +112,7 @@ is
    procedure Fail
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Result : in out Outcome)
    with
@@ -227,7 +227,7 @@ is
    procedure Carry
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Fault  : Bus_Faults.Fault;
       Roles  : Role_List;
@@ -378,7 +378,7 @@ is
    procedure Fail
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Result : in out Outcome)
    is
@@ -440,7 +440,7 @@ is
    procedure Contest
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Fault  : Bus_Faults.Fault;
       Result : out Outcome)

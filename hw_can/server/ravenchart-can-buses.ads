@@ -75,7 +75,7 @@ is
      (B      : Bus;
       N      : Node_Index;
       S      : Segment;
-      Now     : Nanoseconds;
+      Now    : Nanoseconds;
       Offers : Offer_List) return Boolean
    is (Listens (B, N, S)
        and then Offers (N).Present
@@ -173,7 +173,7 @@ is
    procedure Contest
      (B      : in out Bus;
       S      : Segment;
-      Now     : Start_Time;
+      Now    : Start_Time;
       Offers : Offer_List;
       Fault  : Bus_Faults.Fault;
       Result : out Outcome)

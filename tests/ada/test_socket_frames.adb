@@ -30,7 +30,7 @@ procedure Test_Socket_Frames is
    --  Is F unchanged after the conversion both ways?
 
    function Report
-     (Class : Interfaces.Unsigned_32;
+     (Class                     : Interfaces.Unsigned_32;
       Detail, Transmit, Receive : Interfaces.Unsigned_8 := 0)
       return Sockets.Item;
    --  An error report of a driver of Linux.
@@ -63,7 +63,7 @@ procedure Test_Socket_Frames is
    ------------
 
    function Report
-     (Class : Interfaces.Unsigned_32;
+     (Class                     : Interfaces.Unsigned_32;
       Detail, Transmit, Receive : Interfaces.Unsigned_8 := 0)
       return Sockets.Item
    is ((Id     => Sockets.Error_Flag or Class,

@@ -167,13 +167,17 @@ procedure Test_Wire is
    procedure Check_Classic is
 
       procedure Check
-        (Name : String; F : Frame; Length, Stuffed : Natural;
-         Ending : String);
+        (Name            : String;
+         F               : Frame;
+         Length, Stuffed : Natural;
+         Ending          : String);
       --  The frame has this length and these last bits.
 
       procedure Check
-        (Name : String; F : Frame; Length, Stuffed : Natural;
-         Ending : String)
+        (Name            : String;
+         F               : Frame;
+         Length, Stuffed : Natural;
+         Ending          : String)
       is
          Picture : constant Wire.Image := Wire.To_Wire (F);
       begin
@@ -240,13 +244,17 @@ procedure Test_Wire is
    procedure Check_Fd is
 
       procedure Check
-        (Name : String; F : Fd_Frame; Length, Stuffed : Natural;
-         Field : String);
+        (Name            : String;
+         F               : Fd_Frame;
+         Length, Stuffed : Natural;
+         Field           : String);
       --  The frame has this length and this check field.
 
       procedure Check
-        (Name : String; F : Fd_Frame; Length, Stuffed : Natural;
-         Field : String)
+        (Name            : String;
+         F               : Fd_Frame;
+         Length, Stuffed : Natural;
+         Field           : String)
       is
          Picture : constant Wire.Image := Wire.To_Wire (F);
       begin

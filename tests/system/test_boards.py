@@ -27,7 +27,7 @@ from tests.support import board_stacks
 
 EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
 BOARD = "zynqmp"
-OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +\d+ % +ok$", re.M)
+OBSERVED = re.compile(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +[\d.]+ % +ok$", re.M)
 """A processor that met all its deadlines, within its bound."""
 
 
@@ -91,7 +91,8 @@ def test_no_stack_is_deeper_than_its_bound(board: targets.Board, tmp_path: Path)
     for body, task in tasks.items():
         assert 256 < used[body] <= bounds[task].bound, (task, used[body], bounds[task].bound)
         assert bounds[task].path[-1].function != "the run-time library"  # its code is counted
-    assert bounds["interrupts"].size == 32_768
+    assert bounds["interrupts"].bound <= bounds["interrupts"].size in (8_192, 32_768)
+    # of the run-time libraries of GNAT 12 and 15
 
 
 def test_the_driver_of_a_can_controller_against_a_peer(
@@ -196,7 +197,8 @@ def test_a_longer_activity_is_measured_and_its_overrun_fails_the_run(
             assert (status, f"{row} ran" in printed) == (0, False), printed
             assert f"<td>{row}</td>" in page
         else:
-            assert (status, f"{row} ran for longer than the model claims" in printed) == (1, True)
+            assert (status, f"{row} ran for" in printed) == (1, True)
+            assert "above its WCET of 150 us" in printed
             assert f"{row} ran for 16" in printed  # 165 us and what the loop cannot hit
             assert f'<tr class="miss"><td>{row}</td>' in page
 
