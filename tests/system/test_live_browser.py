@@ -34,10 +34,11 @@ PUMP = ROOT / "examples" / "pump" / "model.yaml"
 
 
 def built(model: Path) -> Path:
-    """The executable of the only node of a model, which is generated."""
+    """The executable of the first node of a model, which is generated and built."""
     checked = checking.check(model)
     generation.write_program(checked)
-    return programs.programs_of(checked)[0].build()
+    executables = [program.build() for program in programs.programs_of(checked)]
+    return executables[0]
 
 
 def _numbers(where: Locator, pattern: str) -> tuple[int, int]:
@@ -207,6 +208,7 @@ def test_the_bus_of_a_shell_is_shown_until_it_ends_and_then_that_of_the_next_one
 
 def test_both_nodes_of_a_run_are_shown_with_their_bus(tmp_path: Path) -> None:
     model = Path(shutil.copytree(ROOT / "examples" / "two_nodes", tmp_path / "two")) / "model.yaml"
+    built(model)
     with running(model) as bench, launched() as browser:
         pane = BrowserPage(browser, bench.address)
         pane.page.get_by_role("tab", name="Live").click()
