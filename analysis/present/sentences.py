@@ -150,10 +150,11 @@ def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:
 
 def stream_lines(analysis: Analysis) -> tuple[str, ...]:
     """The load and the limits of each stream to a monitor; none where no node declares one."""
-    return tuple(line for one in analysis.streams for line in _stream_lines(one))
+    return tuple(line for one in analysis.streams for line in lines_of_stream(one))
 
 
-def _stream_lines(one: StreamResponse) -> Iterator[str]:
+def lines_of_stream(one: StreamResponse) -> Iterator[str]:
+    """The load and the limits of one stream."""
     load = rounded.percent(one.load)
     yield f"{one.name} is the main program, below all tasks: core load {load} with it."
     if one.apart is not None:

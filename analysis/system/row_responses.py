@@ -22,6 +22,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
+from ravenchart.described import Described
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.system import Processor, Slot, System
 
@@ -150,15 +151,17 @@ def samples(processor: Processor, seen: Observation) -> Iterator[RowSample]:
 
 
 @dataclass(slots=True)
-class RowHistogram:
+class RowHistogram(Described):
     """The responses of an activity in bins, beside C and R; times in ns."""
 
     name: str
+    """Its name."""
     processor: str
+    """The processor that executes it."""
     wcet: int
     """C."""
     bound: int | None
-    """R of the activity in its release; None where the analysis has none."""
+    """R of the activity in its release; null where the analysis has none."""
     width: int
     """Of a bin: bin k has the responses above k widths, up to k + 1 widths."""
     executions: int = 0
@@ -168,9 +171,9 @@ class RowHistogram:
     at_most: list[int] = field(default_factory=lambda: [0] * BINS)
     """How many upper estimates each bin has."""
     longest: int | None = None
-    """The longest exact response."""
+    """The longest exact response; null where there is none."""
     longest_at_most: int | None = None
-    """The longest upper estimate."""
+    """The longest upper estimate; null where there is none."""
 
     def add(self, sample: RowSample) -> None:
         """Count a response; where it is beyond the last bin, two bins become one until it is not.

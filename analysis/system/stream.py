@@ -19,14 +19,15 @@ bound.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from ravenchart.analysis.core.fixed_priority import response_under
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Reason, Response
 from ravenchart.analysis.core.tasks import Task
+from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.gen.model.nodes import DRAIN_PERIOD, SNAPSHOT_PERIOD, STREAM, Node
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -122,6 +123,20 @@ def streams(system: System, network: Network, found: Holistic) -> Iterator[Strea
             unread = _unread(response)
             records = None if unread is None else most_noted(system, node.name, others, unread)
             yield StreamResponse(node, node.stream.origin, response, records)
+
+
+def network_with_streams(network: Network, found: Iterable[StreamResponse]) -> Network:
+    """The same with the main programs of ``found`` as tasks, which use what they lock."""
+    mains = {one.response.task.core: one.response.task for one in found}
+    cores = {task.name: task.core for task in network.tasks}
+    home = {one.resource: cores[one.user] for one in network.sections if one.user in cores}
+    sections = (
+        replace(one, user=mains[home[one.resource]].name)
+        if one.user == MAIN and home.get(one.resource) in mains
+        else one
+        for one in network.sections
+    )
+    return replace(network, tasks=(*network.tasks, *mains.values()), sections=tuple(sections))
 
 
 def _unread(response: Response) -> int | None:

@@ -79,9 +79,11 @@ def _comparison(options: argparse.Namespace) -> Callable[[Figures], Differences]
 def _export(options: argparse.Namespace, checked: Checked) -> None:
     """Print the system of a model for another tool."""
     from ravenchart.analysis.plain.build import PlainSystem
+    from ravenchart.analysis.system.stream import network_with_streams
 
     analysis = checked.analysis
-    system = PlainSystem(analysis.network, tuple(found.chain for _, found in analysis.limited))
+    network = network_with_streams(analysis.network, analysis.streams)
+    system = PlainSystem(network, tuple(found.chain for _, found in analysis.limited))
     print(plain.exported(system, options.export, options.model, checked.system.name), end="")
 
 

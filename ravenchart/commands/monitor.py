@@ -37,6 +37,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     common.add_model(sub)
     sub.add_argument("--once", action="store_true", help="show one snapshot, and end")
+    sub.add_argument(
+        "--responses", action="store_true",
+        help="show only processors, responses of activities, and the bus",
+    )  # fmt: skip
     common.add_interface(sub, "watch the bus", builds=False)
     common.add_snapshots(sub, "Without it: those of `run`, `shell` and `measure`")
 
@@ -58,7 +62,8 @@ def execute(options: argparse.Namespace) -> int:
         controllers = stack.enter_context(monitoring.watching(checked, files))
         ring = None if interface or options.file else monitoring.bus_of_run(checked)
         end = interface or ring
-        seen = _Seen(checked, controllers, [BusWatch(checked.analysis, end)] if end else [])
+        buses = [BusWatch(checked.analysis, end)] if end else []
+        seen = _Seen(checked, controllers, buses, alone=options.responses)
         for bus in seen.buses:
             stack.callback(bus.close)
         if options.once:
@@ -88,15 +93,22 @@ class _Seen:
         checked: Checked,
         controllers: Sequence[WatchedController],
         buses: Sequence[BusWatch],
+        *,
+        alone: bool,
     ) -> None:
+        """``alone``: of the controllers, processors and responses of activities are shown alone."""
         self._name = checked.system.name
+        self._alone = alone
         self.controllers, self.buses = controllers, buses
         self.on_buses = [bus.look() for bus in buses]
+        for one in controllers:
+            one.add_responses()
 
     def look(self) -> None:
         """Everything as it is now."""
         for one in self.controllers:
             one.look()
+            one.add_responses()
         self.on_buses = [bus.look() for bus in self.buses]
 
     def is_over(self) -> bool:
@@ -111,12 +123,15 @@ class _Seen:
 
     def tables(self) -> RenderableType:
         """For a terminal."""
-        nodes = [
-            monitor_text.tables(
-                f"{self._name} on {one.name}", one.node, tuple(one.last), one.age, one.overlooked
-            )
-            for one in self.controllers
-        ]
+        titles = [f"{self._name} on {one.name}" for one in self.controllers]
+        titled = list(zip(titles, self.controllers, strict=True))
+        if self._alone:
+            nodes = [monitor_text.response_tables([(t, o.node, o.age) for t, o in titled])]
+        else:
+            nodes = [
+                monitor_text.tables(title, one.node, tuple(one.last), one.age, one.overlooked)
+                for title, one in titled
+            ]
         return Group(*nodes, *map(bus_text.tables, self.on_buses))
 
 

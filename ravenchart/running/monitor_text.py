@@ -15,6 +15,7 @@ from rich.text import Text
 from ravenchart import rounded
 
 from .monitored import Overlooked, WatchedEvent, WatchedNode, WatchedProcessor, WatchedQueue
+from .response_text import ResponseTable, response_lines
 from .summary import columns
 
 LATE = 1.0
@@ -29,10 +30,7 @@ def tables(
     overlooked: Overlooked,
 ) -> RenderableType:
     """One node; ``last`` are its last transitions and faults, ``age`` is that of the snapshot."""
-    parts: list[RenderableType] = [_head(title, node, age)]
-    if node.processors:
-        parts.append(_processors(node.processors))
-    parts.append(_losses(node))
+    parts = _processors_and_losses(title, node, age)
     if node.charts:
         parts.append(_charts(node))
     elif any(one.highest is not None for one in node.queues):
@@ -43,11 +41,34 @@ def tables(
         parts.append(_traffic(node))
     if node.values:
         parts.append(_values(node))
+    parts.append(ResponseTable(node.responses, node.responses_note))
     if overlooked.snapshots or overlooked.events:
         parts.append(Text(overlooked_in_words(overlooked)))
-    parts += [Text(text, style="bold red") for text in node.said]
+    parts += _said(node)
     parts.append(Text(f"not seen: {'; '.join(node.not_seen)}", style="dim"))
     return Group(*parts)
+
+
+def response_tables(nodes: Sequence[tuple[str, WatchedNode, float]]) -> RenderableType:
+    """The processors of all nodes, then the responses of activities; arguments as of `tables`."""
+    parts: list[RenderableType] = []
+    for title, node, age in nodes:
+        parts += _processors_and_losses(title, node, age)
+        parts += _said(node)
+    parts += [ResponseTable(node.responses, node.responses_note) for _, node, _ in nodes]
+    return Group(*parts)
+
+
+def _processors_and_losses(title: str, node: WatchedNode, age: float) -> list[RenderableType]:
+    parts: list[RenderableType] = [_head(title, node, age)]
+    if node.processors:
+        parts.append(_processors(node.processors))
+    parts.append(_losses(node))
+    return parts
+
+
+def _said(node: WatchedNode) -> list[RenderableType]:
+    return [Text(text, style="bold red") for text in node.said]
 
 
 def overlooked_in_words(of: Overlooked) -> str:
@@ -83,6 +104,8 @@ def lines(node: WatchedNode, name: str, *, counts: bool) -> Iterator[str]:
             f"{where}{now} {one.name} processor {due}completed {one.completed} misses "
             f"{one.misses} {_responses(one)} {one.word}"
         )
+    for text in response_lines(node.responses):
+        yield f"{where}{now} {text}"
     for chart in node.charts:
         if chart.state is not None:
             yield f"{where}{now} {chart.name} state {chart.state}"

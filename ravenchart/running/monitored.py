@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from ravenchart.analysis.present.report import compare
 from ravenchart.analysis.system.observed import VALUE, TraceRecord
+from ravenchart.analysis.system.row_responses import RowHistogram
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.described import Described
 from ravenchart.gen.model.component import PortKind
@@ -204,6 +205,10 @@ class WatchedNode(Described):
     """The facts that a monitor cannot see of this controller."""
     said: list[str] = field(default_factory=list)
     """Other lines of the controller of a board: why it ended, for example."""
+    responses: list[RowHistogram] = field(default_factory=list)
+    """The observed responses of activities, in the order of the tables."""
+    responses_note: str = ""
+    """The source of these responses, and what is missing."""
 
 
 @dataclass(slots=True)

@@ -81,6 +81,11 @@ class WatchedController(ABC):
     def responses(self) -> LiveRows:
         """The responses of its activities, as far as they are known at the last look."""
 
+    def add_responses(self) -> None:
+        """Let the node have them."""
+        found = self.responses()
+        self.node.responses, self.node.responses_note = found.rows, found.note
+
     @abstractmethod
     def close(self) -> None:
         """Watch it no longer."""

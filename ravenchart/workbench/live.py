@@ -104,10 +104,9 @@ class LiveView:
             if self._values[number].start != one.start:
                 self._values[number] = LastValues(system, one.start)
             lines = self._values[number].look(one.node)
-            responses = one.responses()
-            yield shown_node(system, one.node, one.last, lines, responses.rows) | {
+            one.add_responses()
+            yield shown_node(system, one.node, one.last, lines) | {
                 "age": one.age,
-                "responses_note": responses.note,
                 "overlooked": overlooked_in_words(one.overlooked),
             }
 

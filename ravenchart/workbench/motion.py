@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from ravenchart.analysis.system.row_responses import RowHistogram
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.recording import RecordedValue
 from ravenchart.gen.model.system import System
@@ -33,15 +32,10 @@ There are fewer points where not all of them are known, or are drawn.
 
 
 def shown_node(
-    system: System,
-    node: WatchedNode,
-    last: Sequence[WatchedEvent],
-    lines: Lines,
-    responses: Sequence[RowHistogram],
+    system: System, node: WatchedNode, last: Sequence[WatchedEvent], lines: Lines
 ) -> Json:
     """A node as the page gets it; ``last`` are its last transitions and faults."""
     return asdict(node) | {
-        "responses": [asdict(one) for one in responses],
         "last": [asdict(one) for one in last],
         "drawn": list(_charts(system, node)),
         "window": WINDOW,

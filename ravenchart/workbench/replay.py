@@ -93,10 +93,9 @@ class ReplayView:
             for one in plotted(self._checked.system)
             if one.element in values
         }
-        events, responses = node.events[-KEPT:], controller.responses(at)
-        return shown_node(self._checked.system, node, events, lines, responses) | {
+        node.responses = controller.responses(at)
+        return shown_node(self._checked.system, node, node.events[-KEPT:], lines) | {
             "window": window,
-            "responses_note": "",
             "starts": controller.late if at < controller.late else None,
             "counted": controller.counted(at),
             "records": [

@@ -14,8 +14,8 @@ from dataclasses import asdict
 from typing import Any
 
 from ravenchart import rounded
-from ravenchart.analysis.present.bars import row_of
-from ravenchart.analysis.present.sentences import overload_lines, verdict_line
+from ravenchart.analysis.present.bars import row_of, stream_row
+from ravenchart.analysis.present.sentences import lines_of_stream, overload_lines, verdict_line
 from ravenchart.analysis.system.latencies import Latency
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.analysis.units import TENTH, microseconds
@@ -58,6 +58,7 @@ def whole_view(session: Session) -> Json:
         "loads": _loads(good, saved),
         "components": list(_components(where)),
         "processors": list(_processors(where, good, saved)),
+        "streams": list(_streams(good, saved)),
         "messages": list(_messages(good, saved)),
         "chains": list(_chains(good, saved)),
         "drawings": list(drawings.names(good.system)),
@@ -190,13 +191,31 @@ def _response(good: Analysis, saved: Analysis, name: str) -> Json:
     row = row_of(good.network, good.found, name)
     before = saved.found.from_event(name) if name in saved.found.responses else None
     task = good.tasks.get(name)
+    return _beside(row, row["longest"] if task is None else task.wcet, before)
+
+
+def _streams(good: Analysis, saved: Analysis) -> Iterator[Json]:
+    """The streams to monitors, which nothing on the page changes."""
+    before = {one.name: one.bound for one in saved.streams}
+    for one in good.streams:
+        yield {
+            "name": one.name,
+            **_place(one.origin),
+            "core": one.response.task.core,
+            "said": list(lines_of_stream(one)),
+            **_beside(stream_row(one), one.response.task.wcet, before.get(one.name)),
+        }
+
+
+def _beside(row: Json, wcet: int, before: int | None) -> Json:
+    """A row of the report as the page gets it, and the bound ``before`` of the saved model."""
     return {
         "bound": row["bound"],
         "bound_text": _us(row["bound"]),
         "limit": row["deadline"],
         "limit_text": microseconds(row["deadline"]),
         "slack_text": None if row["slack"] is None else microseconds(row["slack"] // TENTH * TENTH),
-        "wcet_text": microseconds(row["longest"] if task is None else task.wcet),
+        "wcet_text": microseconds(wcet),
         "word": row["word"],
         "met": row["met"],
         "reason": row["reason"],

@@ -111,6 +111,36 @@ def test_a_row_is_dragged_to_another_processor_saved_and_its_comment_kept(
     assert "joint_x.Monitoring" in pane.rows("control")
 
 
+def test_a_stream_is_the_last_response_and_has_nothing_to_change(
+    browser: Browser, folder: Path
+) -> None:
+    model = folder / "model.yaml"
+    text = model.read_text(encoding="utf-8")
+    trace = "    trace: 4096\n"
+    assert text.count(trace) == 1
+    model.write_text(text.replace(trace, f"{trace}    stream: {{wcet: 6 ms}}\n"))
+    with running(model) as bench:
+        pane = Pane(browser, bench.address)
+        rows = pane.page.locator(".processors article")
+        stream = pane.page.locator('[data-stream="controller.stream"]')
+        expect(stream).to_contain_text("lowest priority")
+        expect(stream.locator(".response .number")).to_have_text(
+            re.compile(r"^R \S+ ms of 100 ms$")
+        )
+        expect(stream).to_contain_text(re.compile(r"Its snapshots are at most \d+ ms apart\."))
+        expect(rows.last).to_have_attribute("data-stream", "controller.stream")
+        expect(stream.locator("input, li")).to_have_count(0)
+        before = stream.locator(".response").text_content()
+        pane.row("joint_x.trajectory_step").click()
+        field = pane.page.locator(".controls").get_by_label("WCET C")
+        field.fill("1 ms")
+        field.press("Enter")
+        expect(stream.locator(".response .number")).to_contain_text("saved")
+        assert stream.locator(".response").text_content() != before
+        assert serious(pane.page) == []
+        pane.closed(bench.address)
+
+
 def test_a_row_is_moved_by_keys_and_keeps_the_focus(pane: Pane) -> None:
     page = pane.page
     row = "joint_x.Monitoring"

@@ -22,6 +22,7 @@ export function Processors() {
     ${state.loads.map((load) => html`<${Load} key=${load.name} of=${load} />`)}
     ${state.processors.map((one) => html`<${Processor} key=${one.name} of=${one}
       drop=${drop} setDrop=${setDrop} />`)}
+    ${state.streams.map((one) => html`<${Stream} key=${one.name} of=${one} />`)}
   </section>`;
 }
 
@@ -66,7 +67,6 @@ function Processor({ of, drop, setDrop }) {
     act({ kind: "move", row, to: of.name, place: target }).catch(() => {});
   }
 
-  const saved = of.saved !== null && of.saved !== undefined && of.saved !== of.bound;
   return html`<article class="processor ${of.met === false ? "missed" : ""}" data-processor=${of.name}
       onDragOver=${over} onDrop=${dropped}
       onDragLeave=${(event) => !event.currentTarget.contains(event.relatedTarget) && setDrop(null)}>
@@ -81,15 +81,31 @@ function Processor({ of, drop, setDrop }) {
       <${Field} label="Deadline" hidden=${false} value=${of.written.deadline} follows=${of.deadline} optional
         width="7" send=${set("deadline")} />
     </div>
-    ${of.limit !== undefined && html`<div class="response"><${Bar} of=${of} />
-      <span class="number"><b>R ${time(of.bound)}</b> of ${time(of.limit)}${saved ? `, saved ${time(of.saved)}` : ""}</span></div>`}
-    ${of.reason && html`<p class="error">${of.reason}</p>`}
+    ${of.limit !== undefined && html`<${Response} of=${of} />`}
     <ol ref=${list} aria-label="Activities of ${of.name}">
       ${of.rows.map((row, number) => html`<${Row} key=${row.row} row=${row} number=${number} of=${of}
         mark=${here === number} setDrop=${setDrop} processors=${state.processors} />`)}
       ${of.rows.length === 0 && html`<li class="empty">no activity</li>`}
       ${here === of.rows.length && html`<li class="here" aria-hidden="true"></li>`}
     </ol>
+  </article>`;
+}
+
+/** The bar of a response, its bound beside the deadline, and why there is none. */
+function Response({ of }) {
+  const saved = of.saved !== null && of.saved !== of.bound;
+  return html`<div class="response"><${Bar} of=${of} />
+      <span class="number"><b>R ${time(of.bound)}</b> of ${time(of.limit)}${saved ? `, saved ${time(of.saved)}` : ""}</span></div>
+    ${of.reason && html`<p class="error">${of.reason}</p>`}`;
+}
+
+/** The main program of a node, below all processors of its core; nothing of it is changed here. */
+function Stream({ of }) {
+  return html`<article class="processor ${of.met ? "" : "missed"}" data-stream=${of.name}>
+    <h3><${Place} at=${of} label=${of.name}>${of.name}<//>
+      <span class="remark"> ${of.core}, lowest priority</span><${Word} met=${of.met} text=${of.word} /></h3>
+    <${Response} of=${of} />
+    ${of.said.map((line) => html`<p key=${line} class="remark">${line}</p>`)}
   </article>`;
 }
 

@@ -9,17 +9,23 @@ import random
 from dataclasses import replace
 from io import StringIO
 from itertools import pairwise
+from pathlib import Path
+from xml.etree import ElementTree as Xml
 
 import pytest
 from rich.console import Console
 
+from ravenchart.analysis.core import holistic
+from ravenchart.analysis.exchange import FORMATS
+from ravenchart.analysis.exchange.mast_text import Attributes, parse
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.findings.deadlines import findings
 from ravenchart.analysis.present.figures import figures
 from ravenchart.analysis.present.report import render_report
 from ravenchart.analysis.present.table import show
-from ravenchart.analysis.system.stream import StreamResponse
+from ravenchart.analysis.system.stream import StreamResponse, network_with_streams
 from ravenchart.analysis.system.timing import Analysis, analyse
+from ravenchart.command_line import main
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.nodes import DRAIN_PERIOD, SNAPSHOT_PERIOD, MonitorStream
@@ -27,6 +33,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from tests.support.listings import one_of
+from tests.support.mast_models import by_kind, number, words
 from tests.support.pump import loaded
 from tests.support.timing_models import SWITCHES, worker
 
@@ -350,3 +357,55 @@ def test_the_figures_have_the_stream() -> None:
             "values": 0,
         }
     ]
+
+
+# --- For other tools -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["pump", "two_nodes", "cartesian_robot"])
+def test_as_a_task_the_stream_has_its_bound_and_no_other_changes(name: str) -> None:
+    analysis = analyse(with_streams(example(name), 6 * MS))
+    found = holistic.analyse(network_with_streams(analysis.network, analysis.streams))
+    assert analysis.streams
+    assert {one.name: found.responses[one.name].bound for one in analysis.streams} == {
+        one.name: one.bound for one in analysis.streams
+    }
+    for task, response in analysis.found.responses.items():
+        assert found.responses[task].bound == response.bound, task
+
+
+def test_without_a_stream_the_network_is_the_same() -> None:
+    network = analyse(example("pump")).network
+    assert network_with_streams(network, ()) == network
+
+
+def test_exports_have_the_stream_at_the_lowest_priority(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text(MODEL)
+    texts = {}
+    for tool in FORMATS:
+        assert main(["analyse", str(model), "--export", tool]) == 0
+        texts[tool] = capsys.readouterr().out
+    kinds = by_kind(parse(texts["mast"]))
+    (server,) = [s for s in kinds["Scheduling_Server"] if s.word("Name") == "board_stream_server"]
+    policy = server.get("Server_Sched_Parameters")
+    assert isinstance(policy, Attributes)
+    assert policy.word("The_Priority") == "1"
+    (job,) = [one for one in kinds["Operation"] if one.word("Name") == "board_stream_job"]
+    assert number(job, "Worst_Case_Execution_Time") == 10 * MS + 19 * 2 * 10_000
+    assert len(words(job, "Composite_Operation_List")) == 3
+    root = Xml.fromstring(texts["cheddar"])
+    levels = {
+        task.findtext("name"): int(task.findtext("priority") or 0)
+        for task in root.iter("periodic_task")
+    }
+    assert levels["board_stream"] == min(levels.values()) < levels["work"]
+    assert "board_stream.in_event_model = model.PJdEventModel(P=100000000, J=0)" in texts["pycpa"]
+    plain = MODEL.replace(", stream: {wcet: 10 ms}", "")
+    assert plain != MODEL
+    model.write_text(plain)
+    for tool in FORMATS:
+        assert main(["analyse", str(model), "--export", tool]) == 0
+        assert "stream" not in capsys.readouterr().out

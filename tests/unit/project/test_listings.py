@@ -166,7 +166,7 @@ OUTPUT = {
     ("docs/memory.md", "model.yaml:64:3: error: the stack of control"):
         "tests/system/test_stack_bounds.py",
     ("docs/memory.md", "built build/cartesian_robot-slcan"): "tests/system/test_stack_bounds.py",
-    ("docs/monitor.md", "Infusion_System on board: process 2932"): "figures of a live controller",
+    ("docs/monitor.md", "Infusion_System on board: process 29011"): "figures of a live controller",
     ("docs/monitor.md", "task    "): "tests/unit/analysis/test_streams.py",
     ("docs/monitor.md", "ward: ravenchart "): "figures of a live bus",
     ("docs/semantics.md", "start: "): "tests/system/test_semantics_page.py",

@@ -118,3 +118,33 @@ def test_known_figures(session: Session) -> None:
     reaction = next(one for one in x_loop["limits"] if one["what"] == "reaction")
     assert (reaction["bound_text"], reaction["saved_text"]) == ("32360", "22145")
     assert not reaction["met"] and not x_loop["met"]
+
+
+# --- Streams to monitors -------------------------------------------------------------------
+
+
+def test_a_stream_is_a_row_of_the_page_that_follows_each_change(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / "pump" / "model.yaml").read_text(encoding="utf-8")
+    now = "trace: 4096"
+    assert text.count(now) == 1
+    model = tmp_path / "model.yaml"
+    model.write_text(text.replace(now, f"{now}, stream: {{wcet: 6 ms}}"), encoding="utf-8")
+    session = Session(model)
+    (row,) = whole_view(session)["streams"]
+    (stream,) = session.good.analysis.streams if session.good.analysis is not None else ()
+    assert (row["name"], row["core"]) == ("board.stream", "board")
+    assert (row["bound"], row["limit"], row["word"], row["met"]) == (
+        stream.bound, 100_000_000, "ok", True,
+    )  # fmt: skip
+    assert row["saved"] == row["bound"]
+    assert "stream" in model.read_text(encoding="utf-8").splitlines()[row["line"] - 1]
+    assert stream.apart is not None
+    assert row["said"][1] == f"Its snapshots are at most {rounded.up(stream.apart)} apart."
+    wish = {"kind": "time", "row": "bed.turn", "key": "wcet", "value": "9 ms", "number": 0}
+    assert session.change(SetTime.model_validate(wish))
+    (changed,) = whole_view(session)["streams"]
+    assert changed["bound"] > changed["saved"] == row["bound"]
+
+
+def test_without_a_stream_the_page_has_no_row_for_one(session: Session) -> None:
+    assert whole_view(session)["streams"] == []
