@@ -29,6 +29,7 @@ from ravenchart.proof import ages, outside_spark, proving
 from ravenchart.tools import toolchain
 from ravenchart.tools.toolchain import ToolMissing
 from tests.support import compiler
+from tests.support.proof_records import stale_sources
 
 RECORDS = ROOT / "proofs" / "records"
 """A folder for each age of gnatprove."""
@@ -278,7 +279,7 @@ def prove(names: Sequence[str]) -> bool:
 
 def _left(record: Path) -> bool:
     """Say that there was no time for a target; whether its record is that of its sources."""
-    stale = proving.stale_sources(record) if record.is_file() else (record.name,)
+    stale = stale_sources(record) if record.is_file() else (record.name,)
     record_is = f"differs: {stale[0]}" if stale else "is that of its sources"
     print(f"{record.stem}: not proved here, the time was over; its record {record_is}", flush=True)
     return not stale

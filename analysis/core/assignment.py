@@ -14,15 +14,12 @@ holds for ceiling blocking too, which depends on the same two sets.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeVar
 
 from . import can
-from .blocking import Section
 from .bus import Bus, Frame
 from .can_response import FrameLevel, FrameResponse
-from .fixed_priority import NO_OVERHEAD, response_under
-from .platform import Platform
 from .responses import Reason
 from .tasks import Task
 
@@ -51,31 +48,6 @@ def deadline_monotonic(items: Sequence[Item]) -> list[Item]:
     return sorted(items, key=lambda item: item.deadline - item.jitter)
 
 
-def audsley_tasks(
-    tasks: Sequence[Task], sections: Sequence[Section] = (), platform: Platform = NO_OVERHEAD
-) -> Order:
-    """An order of the tasks of one core in which all deadlines are met, if there is one.
-
-    Their priorities do not count. ValueError where they are on several cores.
-    """
-    if len({task.core for task in tasks}) > 1:
-        raise ValueError("tasks of several cores have no common order")
-    users: dict[str, set[str]] = {}
-    for section in sections:
-        users.setdefault(section.resource, set()).add(section.user)
-
-    def fits(task: Task, above: Sequence[Task], below: Sequence[Task]) -> bool:
-        urgent = {task.name, *(other.name for other in above)}
-        blocking = max(
-            (s for s in sections if s.user not in urgent and users[s.resource] & urgent),
-            key=lambda section: section.length,
-            default=None,
-        )
-        return response_under(task, above, below, blocking, platform).met
-
-    return _audsley(tasks, fits, longest_deadline_first)
-
-
 Candidates = Callable[[Sequence[Item], Sequence[Item]], Iterable[Item]]
 """The items that may go directly above those placed, in the order to try: (left, placed)."""
 
@@ -96,7 +68,7 @@ def audsley_frames(
     first-in first-out queue that is not ``reloaded``: there the order within it counts.
     """
     fits = responses_in_place(frames, bus)
-    return _audsley(frames, lambda frame, above, below: fits(frame, above, below).met, candidates)
+    return audsley(frames, lambda frame, above, below: fits(frame, above, below).met, candidates)
 
 
 def responses_in_place(
@@ -121,19 +93,7 @@ def responses_in_place(
     return response
 
 
-def with_priorities(tasks: Sequence[Task], order: Order, lowest: int = 1) -> tuple[Task, ...]:
-    """The tasks with the priorities of a complete order, from ``lowest`` up, as given."""
-    level = {name: lowest + n for n, name in enumerate(reversed(order.names))}
-    return tuple(replace(task, priority=level[task.name]) for task in tasks)
-
-
-def with_ranks(frames: Sequence[Frame], order: Order, ranks: Sequence[int]) -> tuple[Frame, ...]:
-    """The frames with the given ``ranks``, the lowest for the most urgent of a complete order."""
-    given = dict(zip(order.names, sorted(ranks), strict=True))
-    return tuple(replace(frame, rank=given[frame.name]) for frame in frames)
-
-
-def _audsley(
+def audsley(
     items: Sequence[Item],
     fits: Callable[[Item, Sequence[Item], Sequence[Item]], bool],
     candidates: Candidates[Item],

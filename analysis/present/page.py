@@ -10,7 +10,14 @@ from collections.abc import Mapping
 from itertools import count
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from jinja2 import (
+    BaseLoader,
+    ChoiceLoader,
+    Environment,
+    PackageLoader,
+    StrictUndefined,
+    select_autoescape,
+)
 from markupsafe import Markup
 
 from ravenchart import rounded
@@ -24,16 +31,21 @@ HEADING = re.compile(r"<h2>(.*?)</h2>", re.DOTALL)
 """The heading of a section."""
 
 
-def page(template: str, context: Mapping[str, Any]) -> str:
-    """The HTML text of a template, its contents included."""
-    environment = Environment(
-        loader=PackageLoader("ravenchart.analysis.present"),
+def environment(*own: BaseLoader) -> Environment:
+    """The environment of all pages: templates of one's own, and those of this folder."""
+    return Environment(
+        loader=ChoiceLoader([*own, PackageLoader("ravenchart.analysis.present")]),
         autoescape=select_autoescape(default=True),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
+
+
+def page(template: str, context: Mapping[str, Any]) -> str:
+    """The HTML text of a template, its contents included."""
+    pages = environment()
+    pages.filters |= {
         "us": both,
         "left": left,
         "only_us": units.microseconds,
@@ -42,7 +54,7 @@ def page(template: str, context: Mapping[str, Any]) -> str:
         "factor": rounded.factor,
         "plain_load": lambda task: with_full_jobs(task).utilisation,
     }
-    return _with_contents(environment.get_template(template).render(context))
+    return _with_contents(pages.get_template(template).render(context))
 
 
 def both(ns: int) -> Markup:

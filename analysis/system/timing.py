@@ -106,11 +106,6 @@ class Analysis:
             for row in response.rows:
                 yield self.tasks[response.task.name], row
 
-    @cached_property
-    def row_names(self) -> frozenset[str]:
-        """The rows of all tables."""
-        return frozenset(row.name for task in self.network.tasks for row in task.rows)
-
     def verdict(self, name: str) -> Verdict:
         """Met when the time from the event that leads to it is at most its deadline."""
         if self.found.responses[name].bound is None:

@@ -128,35 +128,27 @@ def tasks_of(system: System) -> tuple[Task, ...]:
         ]
     above = top + (2 if system.messages else 1)
     for host in system.nodes:
-        if host.supervision is not None:
-            tasks.append(
-                Task(
-                    element=f"{host.name}.{SUPERVISOR}",
-                    origin=host.origin,
-                    node=host.name,
-                    period=host.supervision.period,
-                    offset=Ns(0),
-                    deadline=host.supervision.period,
-                    wcet=host.supervision.wcet,
-                    priority=above,
-                    timed=True,
-                )
-            )
-        if host.probe is not None:
-            tasks.append(
-                Task(
-                    element=f"{host.name}.{PROBE}",
-                    origin=host.origin,
-                    node=host.name,
-                    period=host.probe.period,
-                    offset=Ns(0),
-                    deadline=host.probe.deadline,
-                    wcet=host.probe.wcet,
-                    priority=above + (host.supervision is not None),
-                    timed=True,
-                )
-            )
+        if (one := host.supervision) is not None:
+            tasks.append(_own_task(host, SUPERVISOR, one.period, one.period, one.wcet, above))
+        if (probe := host.probe) is not None:
+            priority = above + (host.supervision is not None)
+            tasks.append(_own_task(host, PROBE, probe.period, probe.deadline, probe.wcet, priority))
     return tuple(tasks)
+
+
+def _own_task(host: Node, name: str, period: Ns, deadline: Ns, wcet: Ns, priority: int) -> Task:
+    """A periodic task of the node itself."""
+    return Task(
+        element=f"{host.name}.{name}",
+        origin=host.origin,
+        node=host.name,
+        period=period,
+        offset=Ns(0),
+        deadline=deadline,
+        wcet=wcet,
+        priority=priority,
+        timed=True,
+    )
 
 
 def driver_core(system: System, bus: Bus, node: str) -> int:

@@ -155,11 +155,6 @@ class Drive:
         """True speed in um/s."""
         return self.speed * UM
 
-    @property
-    def kinetic_energy(self) -> float:
-        """Energy of motion in J."""
-        return 0.5 * self.axis.mass * self.speed**2
-
     def _watch(self) -> None:
         """Fault when an enabled drive receives no more set points."""
         self._silence += STEP

@@ -23,11 +23,11 @@ from ravenchart.gen.model.statechart import After, Every
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
-from ravenchart.proof.proving import digest
 from ravenchart.stacks import graph, longest, machine, memory, symbols
 from ravenchart.stacks.longest import LIBRARY, Depths, Rules, StackBound
 from ravenchart.stacks.report import Memory, MemoryPart, PathStep, Stack
 from ravenchart.tools import children
+from ravenchart.tools.kept import file_digest
 
 from .targets import KnownFrame, Target, file_of
 
@@ -181,7 +181,7 @@ def examine(made: BuiltProgram) -> Memory:
 def digests(folders: Iterable[Path], folder: Path) -> dict[str, str]:
     """SHA-256 of each Ada source in folders, by its name from the folder of the model."""
     files = sorted(path for home in folders for path in home.glob("*.ad[sb]"))
-    return {named(p, folder): digest(p) for p in files}
+    return {named(p, folder): file_digest(p) for p in files}
 
 
 def put_all(system: System) -> str:

@@ -12,7 +12,6 @@ sources have changed. The programs must then be those that were examined.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
@@ -201,4 +200,4 @@ def _digest(file: Path) -> str:
     """SHA-256 of a regular file; OSError where there is none."""
     if not file.is_file():
         raise FileNotFoundError(file)
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+    return kept.file_digest(file)

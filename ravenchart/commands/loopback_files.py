@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
+from jinja2 import PackageLoader
 
+from ravenchart.analysis.present.page import environment
 from ravenchart.hw_can.conformance.suite import CaseVerdict, SuiteResult, histogram
 
 
@@ -61,20 +62,9 @@ def junit(result: SuiteResult) -> str:
 
 def html(result: SuiteResult) -> str:
     """The report, in the style of the timing report."""
-    environment = Environment(
-        loader=ChoiceLoader(
-            [
-                PackageLoader("ravenchart.commands", "."),
-                PackageLoader("ravenchart.analysis.present"),
-            ]
-        ),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    pages = environment(PackageLoader("ravenchart.commands", "."))
     bars = histogram(result.latencies)
-    return environment.get_template("loopback.html").render(
+    return pages.get_template("loopback.html").render(
         result=result,
         facts=facts(result),
         counts=[(verdict.value.lower(), result.count(verdict)) for verdict in CaseVerdict],

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 from ravenchart.building.programs import runtime_folders
 from ravenchart.gen.diagnostics import CODES, Diagnostic
 from ravenchart.paths import version
+from ravenchart.tools.kept import file_digest
 
 from . import records
 from .claim import Claim, Shown
@@ -123,11 +123,7 @@ def _users(ref: str, name: str, parts: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _files(paths: Iterable[Path], folder: Path) -> list[dict[str, Any]]:
     found = sorted(path for path in paths if path.is_file() and path.suffix in records.ADA)
-    pairs = [
-        (records.shown(path, folder), hashlib.sha256(path.read_bytes()).hexdigest())
-        for path in found
-    ]
-    return _components(pairs)
+    return _components((records.shown(path, folder), file_digest(path)) for path in found)
 
 
 def _components(pairs: Iterable[tuple[str, str]]) -> list[dict[str, Any]]:

@@ -25,8 +25,8 @@ from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark
-from ravenchart.proof.proving import digest
 from ravenchart.stacks.report import Memory
+from ravenchart.tools.kept import file_digest
 
 from . import records, tracefile
 from .records import BelievedRecord
@@ -106,7 +106,7 @@ def gather(
     _refuse_foreign(given, made)
     nodes = tuple(_node(program, chosen, files, why, given) for program in made)
     runtime, reasons = _runtime(chosen, folder)
-    sources = tuple((name, digest(folder / name)) for name in found.sources)
+    sources = tuple((name, file_digest(folder / name)) for name in found.sources)
     return Facts(
         checked,
         chosen,
@@ -180,7 +180,7 @@ def _node(
             differences.append(f"{name} is not generated of this model")
         elif files and path.read_bytes() != wanted[name].encode("utf-8"):
             differences.append(f"{name} is not what the model gives")
-    pairs = tuple((records.shown(path, folder), digest(path)) for path in there.values())
+    pairs = tuple((records.shown(path, folder), file_digest(path)) for path in there.values())
     return NodeFacts(program, record, tuple(differences), pairs)
 
 

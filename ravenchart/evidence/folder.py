@@ -15,10 +15,11 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
+from jinja2 import PackageLoader
 from markupsafe import Markup, escape
 
 from ravenchart.analysis.present import report
+from ravenchart.analysis.present.page import environment
 from ravenchart.building.checking import generated_folder
 from ravenchart.gen.diagnostics import Diagnostic
 from ravenchart.paths import ROOT
@@ -200,16 +201,8 @@ def _faults() -> list[Fault]:
 
 
 def _page(evidence: Evidence, tree: str) -> str:
-    environment = Environment(
-        loader=ChoiceLoader(
-            [PackageLoader("ravenchart.evidence"), PackageLoader("ravenchart.analysis.present")]
-        ),
-        autoescape=select_autoescape(default=True),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
+    pages = environment(PackageLoader("ravenchart.evidence"))
+    pages.filters |= {
         "code": _code,
         "word": _word,
         "anchor": _anchor,
@@ -218,7 +211,7 @@ def _page(evidence: Evidence, tree: str) -> str:
     counts = {word: 0 for word in ("met", "partly", "not met", "not shown", "user's")}
     for claim in evidence.claims:
         counts[claim.verdict] += 1
-    return environment.get_template("evidence.html").render(
+    return pages.get_template("evidence.html").render(
         evidence=evidence,
         tree=Markup(tree),
         counts=counts,

@@ -18,8 +18,8 @@ from ravenchart.building.variants import DRIVER_FOLDERS
 from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
-from ravenchart.proof import proving
 from ravenchart.proof.ages import AGES
+from ravenchart.tools.kept import file_digest
 
 RECORDS = ROOT / "proofs" / "records"
 """Of the examples and of the runtime: a folder for each age of gnatprove."""
@@ -124,7 +124,7 @@ def _stale(named: Iterable[tuple[str, str, str]]) -> Iterator[str]:
         path = ROOT / key
         if not path.is_file():
             yield f"the proved source {name} is not there"
-        elif proving.digest(path) != wanted:
+        elif file_digest(path) != wanted:
             yield f"{name} differs from the source that was proved"
 
 

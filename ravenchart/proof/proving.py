@@ -10,10 +10,8 @@ time, so a difference means a change.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
@@ -22,6 +20,7 @@ from pathlib import Path
 from ravenchart.failures import ToolFailed
 from ravenchart.paths import ROOT
 from ravenchart.tools import steps
+from ravenchart.tools.kept import file_digest
 
 from . import ages, spark_results, verdicts
 from . import earlier as proof_cache
@@ -170,7 +169,7 @@ SOURCES = (".ads", ".adb", ".gpr", ".adc")
 def _inputs(folders: Sequence[Path]) -> dict[Path, str]:
     """Every file that the proof may read, with its SHA-256."""
     found = {path.resolve() for folder in folders for path in folder.glob("*")}
-    return {p: digest(p) for p in sorted(found) if p.suffix in SOURCES and p.is_file()}
+    return {p: file_digest(p) for p in sorted(found) if p.suffix in SOURCES and p.is_file()}
 
 
 def _is_read(path: Path, results: Results) -> bool:
@@ -181,11 +180,6 @@ def _is_read(path: Path, results: Results) -> bool:
 def _shown(path: Path) -> str:
     base = ROOT
     return path.relative_to(base).as_posix() if path.is_relative_to(base) else str(path)
-
-
-def digest(path: Path) -> str:
-    """SHA-256 of a file's bytes, in hexadecimal."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def record_text(proof: Proof) -> str:
@@ -210,14 +204,3 @@ def record_text(proof: Proof) -> str:
         ),
     ]
     return "\n".join(lines) + "\n"
-
-
-def stale_sources(record: Path) -> tuple[str, ...]:
-    """The sources that differ from what the record says was proved."""
-    found = tomllib.loads(record.read_text(encoding="utf-8"))
-    stale = []
-    for name, wanted in found["sources"].items():
-        path = ROOT / name
-        if not path.is_file() or digest(path) != wanted:
-            stale.append(name)
-    return tuple(stale)

@@ -11,7 +11,6 @@ contracts name. A body that should call a function and does not has a line that 
 
 from __future__ import annotations
 
-import hashlib
 import json
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,6 +22,7 @@ from typing import Any
 
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
+from ravenchart.tools.kept import file_digest
 
 GCOV = "gcov"
 """The tool that reads the counts; it belongs to the compiler."""
@@ -154,7 +154,7 @@ def tracefile(coverage: Sequence[SourceCoverage]) -> str:
 def _records(one: SourceCoverage) -> Iterator[str]:
     yield "TN:"
     yield f"SF:{one.path}"
-    yield f"VER:{hashlib.sha256(one.path.read_bytes()).hexdigest()}"
+    yield f"VER:{file_digest(one.path)}"
     for (line, index), count in sorted(one.branches.items()):
         yield f"BRDA:{line},0,{index},{count if one.lines.get(line) else '-'}"
     yield f"BRF:{len(one.branches)}"

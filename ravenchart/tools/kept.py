@@ -33,7 +33,7 @@ def digest(parts: object) -> str:
 def sources(*folders: str) -> list[tuple[str, str]]:
     """Name and SHA-256 of each module in these folders of the package: what a result is made by."""
     found = ((place, home) for home in folders for place in sorted(_modules(PACKAGE / home)))
-    return [(os.path.relpath(place, PACKAGE), _digest_of(place)) for place, _ in found]
+    return [(os.path.relpath(place, PACKAGE), file_digest(place)) for place, _ in found]
 
 
 def _modules(folder: str | Path) -> Iterator[str]:
@@ -44,8 +44,9 @@ def _modules(folder: str | Path) -> Iterator[str]:
             yield from _modules(entry.path)
 
 
-def _digest_of(place: str) -> str:
-    with open(place, "rb", buffering=0) as file:
+def file_digest(path: str | Path) -> str:
+    """SHA-256 of a file's bytes, in hexadecimal."""
+    with open(path, "rb", buffering=0) as file:
         return hashlib.sha256(file.read()).hexdigest()
 
 

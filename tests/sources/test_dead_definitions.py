@@ -23,18 +23,9 @@ CALLED_BY_OTHERS = {
     "handle": "socketserver calls it",
     "PRESENT": "an import that must come before a signal can",
     "error_counters": "what users of python-can read",
-    "kinetic_energy": "a law of physics that the plant has to keep: its tests read it",
-    "row_names": "what the test of growth counts",
     "units_of_program": "tests/mutation breaks the nodes of units",
     "units_of_simulation": "tests/mutation breaks the nodes of units",
-    "of_frame": "the worst case that tests build for the simulation",
-    "of_task": "the worst case that tests build for the simulation",
-    "chance_scenario": "random releases, which tests build for the simulation",
-    "audsley_tasks": "theory beside the one for frames, compared with references",
-    "with_priorities": "theory beside the one for frames, compared with references",
-    "with_ranks": "theory beside the one for frames, compared with references",
     "is_kept": "`make prove` asks it when its time is over",
-    "stale_sources": "the tests of the proof records are built on it",
 }
 """Names that nothing of the package uses, and who uses them."""
 

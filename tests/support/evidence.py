@@ -20,6 +20,7 @@ from ravenchart.gen.explanations import edited
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
 from ravenchart.proof.spark_results import Entity, Outside, Results
+from ravenchart.tools.kept import file_digest
 
 BASE = ROOT / "gen" / "explanations" / "bases" / "valve.yaml"
 EDITS = (
@@ -88,7 +89,7 @@ def _text(sources: Iterable[Path], units: Sequence[str], outside: Iterable[str])
     entities = tuple(Entity(unit, 2, ("Z3",)) for unit in units)
     found = tuple(Outside(name, "x.ads:1") for name in outside)
     results = Results(2 * len(units), 0, (), 0, found, frozenset(), entities)
-    pairs = tuple((str(path), proving.digest(path)) for path in sources)
+    pairs = tuple((str(path), file_digest(path)) for path in sources)
     return proving.record_text(proving.Proof(results, pairs, "GNATprove 1.0"))
 
 

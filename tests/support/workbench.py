@@ -116,6 +116,23 @@ class Running:
         return self.process.wait(PATIENCE)
 
 
+def refuses_malformed(page: Running, body: bytes) -> None:
+    """A malformed message is refused with the reason, and changes nothing."""
+    number = page.state()["number"]
+    reply = page.request("act", body)
+    assert reply.status == 400
+    assert reply.json["error"].startswith("malformed message: ")
+    assert page.state()["number"] == number
+
+
+def refuses_other_types_and_methods(page: Running) -> None:
+    """A message is JSON, and is posted where messages go."""
+    message = b'{"kind": "undo", "number": 0}'
+    assert page.request("act", message, {"content-type": "text/plain"}).status == 415
+    assert page.request("act").status == 404
+    assert page.request("state", message).status == 404
+
+
 def command(*words: str, name: str = "workbench") -> list[str]:
     """The words of a call."""
     return [sys.executable, "-P", "-m", "ravenchart.start", name, *words]

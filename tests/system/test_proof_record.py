@@ -13,8 +13,9 @@ import pytest
 
 from ravenchart.evidence import records
 from ravenchart.paths import ROOT
-from ravenchart.proof import ages, proving
+from ravenchart.proof import ages
 from tests import house
+from tests.support.proof_records import stale_sources
 
 PROGRAMS = {name: ROOT / "examples" / name for name in house.EXAMPLES}
 NAMES = (
@@ -57,7 +58,7 @@ def test_every_target_has_a_record(name: str) -> None:
 def test_every_proved_source_is_as_it_was_proved(path: Path) -> None:
     assert path.stem in NAMES
     assert path.parent.name in {age.name for age in ages.AGES}
-    assert proving.stale_sources(path) == ()
+    assert stale_sources(path) == ()
 
 
 @pytest.mark.parametrize("path", RECORDS, ids=lambda p: f"{p.parent.name}-{p.stem}")
@@ -79,7 +80,7 @@ def test_a_model_of_the_tests_gives_what_was_proved(name: str) -> None:
     names = house.record_names(name, folder)
     assert {path.stem for path in found} == set(names)
     for path in found:
-        assert proving.stale_sources(path) == ()
+        assert stale_sources(path) == ()
     _bodies_recorded(name, folder)
 
 
@@ -135,4 +136,4 @@ def test_a_changed_source_is_noticed(tmp_path: Path) -> None:
     name = next(iter(tomllib.loads(text)["sources"]))
     digest = tomllib.loads(text)["sources"][name]
     record.write_text(text.replace(digest, "0" * 64))
-    assert proving.stale_sources(record) == (name,)
+    assert stale_sources(record) == (name,)

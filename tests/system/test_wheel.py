@@ -111,6 +111,7 @@ def test_a_wheel_has_one_import_package_and_all_that_a_program_needs(wheel: Path
     assets = {f"ravenchart/workbench/assets/{path.name}" for path in ASSETS.iterdir()}
     assert assets and assets <= set(names)
     assert not [name for name in names if "/tests/" in name or "mutation" in name]
+    assert not [name for name in names if "/hw_can/crate/" in name], "a second runtime"
 
 
 @pytest.mark.live

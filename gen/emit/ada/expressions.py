@@ -238,29 +238,24 @@ class CaseExpr:
 
 
 @built
-class ForAll:
+class Quantified:
+    """The condition holds for all values of the domain, or for some."""
+
+    variable: str
+    domain: Domain
+    condition: Expr
+
+    def __init__(self, variable: str, domain: Domain | str, condition: Expr) -> None:
+        self.variable, self.domain = identifier(variable), _node(domain)
+        self.condition = condition
+
+
+class ForAll(Quantified):
     """``(for all v in domain => condition)``."""
 
-    variable: str
-    domain: Domain
-    condition: Expr
 
-    def __init__(self, variable: str, domain: Domain | str, condition: Expr) -> None:
-        self.variable, self.domain = identifier(variable), _node(domain)
-        self.condition = condition
-
-
-@built
-class ForSome:
+class ForSome(Quantified):
     """``(for some v in domain => condition)``."""
-
-    variable: str
-    domain: Domain
-    condition: Expr
-
-    def __init__(self, variable: str, domain: Domain | str, condition: Expr) -> None:
-        self.variable, self.domain = identifier(variable), _node(domain)
-        self.condition = condition
 
 
 Holder = DottedName | Selected | Indexed | Attribute | Call
@@ -290,8 +285,7 @@ Expr = (
     | Aggregate
     | IfExpr
     | CaseExpr
-    | ForAll
-    | ForSome
+    | Quantified
 )
 
 # --- Short ways ----------------------------------------------------------------------

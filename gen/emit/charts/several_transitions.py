@@ -75,7 +75,7 @@ def fire(moves: Moves, chosen: str) -> Do:
 
 def firing_list(shape: RegionShape) -> list[Decl]:
     """The list of the transitions that one step takes, with the segments that it may hold."""
-    names = [f.literal for f in shape.firings if is_segment(shape, f)]
+    names = [f.literal for f in shape.firings if leaves_choice_or_history(shape, f)]
     none = equal(ref("T"), ref("None"))
     chosen = Param("T", "in", "Selection")
     goes_on = one_of(ref("T"), names) if shape.passes else none
@@ -179,8 +179,8 @@ def is_only(chosen: Expr) -> Expr:
     return call("Firings.Is_Only", _FIRED, chosen)
 
 
-def is_segment(shape: RegionShape, firing: Firing) -> bool:
-    """Does it go on from a choice or history?"""
+def leaves_choice_or_history(shape: RegionShape, firing: Firing) -> bool:
+    """Whether it is a segment behind a choice or history."""
     return shape.region.pseudostate(firing.sources[0]) is not None
 
 

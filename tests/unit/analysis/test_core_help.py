@@ -17,15 +17,13 @@ from ravenchart.analysis.core import can, fixed_priority
 from ravenchart.analysis.core.assignment import (
     Order,
     audsley_frames,
-    audsley_tasks,
     deadline_monotonic,
-    with_priorities,
-    with_ranks,
 )
 from ravenchart.analysis.core.blocking import Section, blockers
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.sensitivity import growth, scaled, scaling, tightest
 from ravenchart.analysis.core.tasks import TableRow, Task
+from tests.support.priorities import audsley_tasks, with_priorities, with_ranks
 
 
 def met(tasks: list[Task] | tuple[Task, ...], sections: list[Section]) -> bool:

@@ -14,7 +14,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from ravenchart.analysis.core import fixed_priority, holistic, offsets
-from ravenchart.analysis.core.assignment import audsley_tasks, with_priorities
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.changes import stretched
 from ravenchart.analysis.core.fixed_priority import analyse_tasks
@@ -23,6 +22,7 @@ from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.sensitivity import network_scaling
 from ravenchart.analysis.core.tasks import TableRow, Task, with_full_jobs
+from tests.support.priorities import audsley_tasks, with_priorities
 
 
 def task(name: str, priority: int, wcet: int, period: int, offset: int | None) -> Task:

@@ -15,10 +15,7 @@ from ravenchart.analysis.core import can, fixed_priority, holistic
 from ravenchart.analysis.core.assignment import (
     Order,
     audsley_frames,
-    audsley_tasks,
     deadline_monotonic,
-    with_priorities,
-    with_ranks,
 )
 from ravenchart.analysis.core.bus import Bus, Frame
 from ravenchart.analysis.core.chains import ChainStep, HopKind, TimedChain, latency
@@ -35,6 +32,7 @@ from tests.support.core_cases import (
     tasks_of,
     two_nodes,
 )
+from tests.support.priorities import audsley_tasks, with_priorities, with_ranks
 
 
 def named(file: str, *models: str) -> list[Any]:

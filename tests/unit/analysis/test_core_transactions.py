@@ -15,8 +15,8 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.tasks import Task
 from ravenchart.analysis.plain.build import PlainSystem, load_plain
 from ravenchart.analysis.simulation.engine import simulate
-from ravenchart.analysis.simulation.phases import chance_scenario
 from tests.support.random_networks import random_transactions
+from tests.support.random_phases import chance_scenario
 
 PUBLISHED = """
 bus,bit_rate

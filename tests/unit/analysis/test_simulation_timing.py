@@ -18,15 +18,15 @@ from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.core.tasks import TableRow, Task
-from ravenchart.analysis.simulation import worst
 from ravenchart.analysis.simulation.engine import simulate
 from ravenchart.analysis.simulation.phases import (
     InsideSection,
     Phase,
     PhaseScenario,
-    chance_scenario,
 )
+from tests.support import worst_phases
 from tests.support.random_networks import random_network, with_epochs, with_offsets
+from tests.support.random_phases import chance_scenario
 
 SYSTEMS = 1_000
 
@@ -195,7 +195,7 @@ def test_every_task_attains_a_bound_that_comes_of_offsets() -> None:
             tables = [t for t in level if t.rows and t.name not in known]
             if response.alignment is None or tables:
                 continue
-            case = worst.of_task(response)
+            case = worst_phases.of_task(response)
             if case.until > 200_000:
                 continue
             for name in response.alignment.tasks:
@@ -216,7 +216,7 @@ def test_every_task_attains_its_bound_where_theory_has_such_phases() -> None:
         for response in analyse_tasks(network.tasks, network.sections):
             if response.bound is None:
                 continue
-            case = worst.of_task(response)
+            case = worst_phases.of_task(response)
             alone = replace(network, frames={}, buses={}, released_by={})
             seen = simulate(alone, case.scenario, case.until).longest[response.task.name]
             order, reach = response.level.order, response.level.reach
@@ -246,7 +246,7 @@ def test_every_frame_attains_its_bound_but_for_one_bit_of_blocking() -> None:
         for response in can.analyse(frames, bus):
             if response.bound is None:
                 continue
-            case = worst.of_frame(response)
+            case = worst_phases.of_frame(response)
             seen = simulate(Network((), {"": frames}, {"": bus}), case.scenario, case.until)
             frame, level = response.frame, response.level
             lower = [
@@ -267,7 +267,7 @@ def test_a_simulation_that_only_starts_together_would_not_show_blocking() -> Non
     )
     response = analyse_tasks(network.tasks, network.sections)[0]
     assert response.bound == 14
-    case = worst.of_task(response)
+    case = worst_phases.of_task(response)
     assert simulate(network, PhaseScenario(), 90).longest["high"] == 5
     assert simulate(network, case.scenario, case.until).longest["high"] == 13
 

@@ -5,12 +5,10 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 from pathlib import Path
 
 import pytest
-import yaml
 
 from ravenchart.building import checking, generation, programs
 from ravenchart.command_line import main
@@ -118,14 +116,6 @@ def test_only_the_main_file_has_deployments() -> None:
     (found,) = loaded("model.yaml@bench", bench=text).diagnostics
     assert (found.code, found.message) == ("RV-0803", "only the main file has deployments")
     assert found.origin.file == "bench.yaml"
-
-
-def test_the_page_shows_the_model_of_these_tests() -> None:
-    page = (ROOT / "docs/deployments.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```yaml\n# (\w+\.yaml)[^\n]*\n(.*?)```", page, re.DOTALL)
-    assert {name for name, _ in blocks} == set(TEXTS)
-    for name, text in blocks:
-        assert yaml.safe_load(text) == yaml.safe_load(TEXTS[name]), name
 
 
 # --- Programs

@@ -22,7 +22,7 @@ from ravenchart.evidence import facts, folder, ledger, records, standards
 from ravenchart.evidence.claim import ClaimKind
 from ravenchart.gen.diagnostics import warning
 from ravenchart.paths import ROOT
-from ravenchart.proof import proving
+from ravenchart.tools.kept import file_digest
 from tests.support import evidence
 from tests.support.evidence import made, verdicts
 
@@ -394,7 +394,7 @@ def test_sarif_and_sbom_have_what_their_formats_require(home: Path) -> None:
     assert {ref for one in bill["dependencies"] for ref in one["dependsOn"]} <= {*refs}
     files = {one["name"]: one for top in bill["components"] for one in top.get("components", ())}
     body = "user/valve_house-valve-activities.adb"
-    assert files[body]["hashes"][0]["content"] == proving.digest(home / body)
+    assert files[body]["hashes"][0]["content"] == file_digest(home / body)
 
 
 def test_the_tree_shows_each_claim_with_its_verdict(home: Path) -> None:

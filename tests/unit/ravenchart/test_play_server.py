@@ -20,7 +20,16 @@ from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from ravenchart.workbench import guard
 from tests.support.progress import without_progress
-from tests.support.workbench import PATIENCE, Running, command, environment, running, until
+from tests.support.workbench import (
+    PATIENCE,
+    Running,
+    command,
+    environment,
+    refuses_malformed,
+    refuses_other_types_and_methods,
+    running,
+    until,
+)
 
 pytestmark = [pytest.mark.clock, pytest.mark.slow]
 
@@ -100,10 +109,7 @@ MALFORMED = [
 
 @pytest.mark.parametrize("body", MALFORMED)
 def test_a_malformed_message_is_refused_with_the_reason(page: Running, body: bytes) -> None:
-    number = page.state()["number"]
-    reply = page.request("act", body)
-    assert reply.status == 400 and reply.json["error"].startswith("malformed message: ")
-    assert page.state()["number"] == number
+    refuses_malformed(page, body)
 
 
 @pytest.mark.parametrize("value", [
@@ -121,10 +127,7 @@ def test_a_value_that_is_none_is_refused_in_words(page: Running, value: object) 
 def test_long_messages_other_types_and_methods_are_refused(page: Running) -> None:
     long = b'{"kind": "wait", "duration": "' + b"a" * guard.LARGEST + b'", "number": 0}'
     assert page.request("act", long).status == 413
-    message = b'{"kind": "undo", "number": 0}'
-    assert page.request("act", message, {"content-type": "text/plain"}).status == 415
-    assert page.request("act").status == 404
-    assert page.request("state", message).status == 404
+    refuses_other_types_and_methods(page)
 
 
 @pytest.mark.parametrize("path", [

@@ -12,6 +12,7 @@ import pytest
 from ravenchart.failures import ToolFailed
 from ravenchart.proof import ages, earlier, proving, spark_results
 from ravenchart.proof.spark_results import Results
+from ravenchart.tools.kept import file_digest
 
 
 def test_sources_that_change_during_a_proof_give_no_result(
@@ -38,4 +39,4 @@ def test_sources_that_change_during_a_proof_give_no_result(
     assert stored == []
     proof = proving.prove(task, fresh=True)
     assert len(stored) == 1
-    assert dict(proof.sources)[str(source)] == proving.digest(source)
+    assert dict(proof.sources)[str(source)] == file_digest(source)

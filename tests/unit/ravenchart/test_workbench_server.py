@@ -23,7 +23,16 @@ from ravenchart.paths import ROOT
 from ravenchart.workbench import guard
 from tests.support.can_frames import within
 from tests.support.progress import without_progress
-from tests.support.workbench import PATIENCE, Running, command, environment, running, until
+from tests.support.workbench import (
+    PATIENCE,
+    Running,
+    command,
+    environment,
+    refuses_malformed,
+    refuses_other_types_and_methods,
+    running,
+    until,
+)
 
 pytestmark = pytest.mark.clock
 
@@ -169,18 +178,11 @@ MALFORMED = [
 
 @pytest.mark.parametrize("body", MALFORMED)
 def test_a_malformed_message_is_refused_with_the_reason(bench: Running, body: bytes) -> None:
-    number = bench.state()["number"]
-    reply = bench.request("act", body)
-    assert reply.status == 400
-    assert reply.json["error"].startswith("malformed message: ")
-    assert bench.state()["number"] == number
+    refuses_malformed(bench, body)
 
 
 def test_messages_are_json_of_the_right_method(bench: Running) -> None:
-    message = b'{"kind": "undo", "number": 0}'
-    assert bench.request("act", message, {"content-type": "text/plain"}).status == 415
-    assert bench.request("act").status == 404
-    assert bench.request("state", message).status == 404
+    refuses_other_types_and_methods(bench)
 
 
 def test_a_message_about_an_earlier_state_is_refused(bench: Running) -> None:

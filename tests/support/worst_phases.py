@@ -19,8 +19,7 @@ from ravenchart.analysis.core.bus import Frame
 from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.responses import Alignment, Response
 from ravenchart.analysis.core.tasks import Task
-
-from .phases import Choice, InsideSection, Phase, PhaseScenario
+from ravenchart.analysis.simulation.phases import Choice, InsideSection, Phase, PhaseScenario
 
 
 @dataclass(frozen=True, slots=True)
