@@ -43,7 +43,7 @@ COMMANDS = {
         "compare the generated program with the model, by independent code",
     ),
     "run": ("run", "build and run the controller on this machine"),
-    "shell": ("shell", "send commands to the running controller, and see what it says"),
+    "shell": ("shell", "send commands to the running controller, and print its answers"),
     "monitor": ("monitor", "watch the running controller: responses, states, losses"),
     "trace": ("trace", "write the trace of a run or simulation as CSV, for Perfetto or as MDF 4"),
     "measure": ("measure", "run the controller, and measure the execution time of each row"),
@@ -202,11 +202,11 @@ def _parser(told: Sequence[str], *, whole: bool = False) -> argparse.ArgumentPar
         aliases = ALIASES.get(name, ())
         sub = commands.add_parser(name, aliases=aliases, help=help_text, description=help_text)
         if whole or called == name:
+            from .commands.answer import add_option
+
             command = import_module(f"ravenchart.commands.{module}")
             command.add_arguments(sub)
             if name not in WITHOUT_JSON and not any(JSON in a.option_strings for a in sub._actions):
-                sub.add_argument(
-                    JSON, action="store_true", help="print the answer as one JSON object"
-                )
+                add_option(sub)
             sub.set_defaults(execute=command.execute, command=name, parser=whole_parser)
     return parser

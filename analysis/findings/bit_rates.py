@@ -13,6 +13,8 @@ from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.buses import Bus
 
+from .causes import RootFinding
+
 TOO_SLOW = "RV-0910"
 """Several limits are exceeded, and a higher bit rate of one bus meets all of them."""
 
@@ -28,14 +30,14 @@ SHOWN = 3
 
 def blamed_on_a_bus(
     analysis: Analysis,
-    found: tuple[Diagnostic, ...],
+    found: Sequence[RootFinding],
     judged: Callable[[Analysis], Sequence[Diagnostic]],
 ) -> tuple[Diagnostic, ...]:
     """The findings; one error in place of all that a higher bit rate of one bus removes.
 
     ``judged`` gives the findings of a changed system. The error of an overloaded bus names the
-    rate in its hint. A bus whose identifiers the analysis chooses is left out: another rate may
-    give them another order.
+    rate that meets every limit, and then is the only error. A bus whose identifiers the analysis
+    chooses is left out: another rate may give them another order.
     """
 
     def left(bus: Bus, rate: int) -> set[object]:
@@ -44,8 +46,9 @@ def blamed_on_a_bus(
         return {_subject(one) for one in other if one.is_error}
 
     if analysis.overloaded:
-        return tuple(_with_number(one, analysis.overloaded, left) for one in found)
-    late = [one for one in found if one.is_error]
+        return _of_overloads(analysis.overloaded, found, left)
+    shown = tuple(one.shown for one in found)
+    late = [one for one in shown if one.is_error]
     for bus in analysis.system.buses:
         rates = _higher(bus)
         if len(late) < SEVERAL or not rates:
@@ -54,8 +57,8 @@ def blamed_on_a_bus(
         gone = [one for one in late if _subject(one) not in always]
         if len(gone) >= SEVERAL:
             rate = next(one for one in rates if left(bus, one) <= always)
-            return (_too_slow(bus, rate, gone), *(one for one in found if one not in gone))
-    return found
+            return (_too_slow(bus, rate, gone), *(one for one in shown if one not in gone))
+    return shown
 
 
 def _subject(one: Diagnostic) -> object:
@@ -63,17 +66,27 @@ def _subject(one: Diagnostic) -> object:
     return one.code, one.origin, re.split(r"\d", one.message)[0]
 
 
-def _with_number(
-    one: Diagnostic, overloaded: Sequence[Bus], left: Callable[[Bus, int], set[object]]
-) -> Diagnostic:
-    """The error of an overloaded bus with the rate that meets every limit, if there is one."""
-    bus = next((bus for bus in overloaded if bus.origin == one.origin), None)
-    rates = () if bus is None else _higher(bus)
-    rate = next((rate for rate in rates if bus is not None and not left(bus, rate)), None)
-    if rate is None:
-        return one
-    text = f"`bit_rate: {_spoken(rate)}` is the lowest standard rate that meets all limits"
-    return replace(one, hint=f"{one.hint}: {text}")
+def _of_overloads(
+    overloaded: Sequence[Bus], found: Sequence[RootFinding], left: Callable[[Bus, int], set[object]]
+) -> tuple[Diagnostic, ...]:
+    """The findings beside overloaded buses.
+
+    Where a rate of one bus meets every limit, its error names the rate and counts all others.
+    """
+    for bus in overloaded:
+        rate = next((rate for rate in _higher(bus) if not left(bus, rate)), None)
+        if rate is None:
+            continue
+        own = next(
+            one for one in found if one.cause == bus.name and one.diagnostic.origin == bus.origin
+        )
+        others = [one for one in found if one.diagnostic.is_error and one is not own]
+        count = own.dependents + sum(1 + one.dependents for one in others)
+        text = f"`bit_rate: {_spoken(rate)}` is the lowest standard rate that meets all limits"
+        named = replace(own.diagnostic, hint=f"{own.diagnostic.hint}: {text}")
+        root = replace(own, diagnostic=named, dependents=count)
+        return (root.shown, *(one.shown for one in found if not one.diagnostic.is_error))
+    return tuple(one.shown for one in found)
 
 
 def _higher(bus: Bus) -> tuple[int, ...]:

@@ -28,6 +28,29 @@ def _is_delayed(response: Response | FrameResponse) -> bool:
     return response.reason is Reason.DELAYED and not is_full(response)
 
 
+@dataclass(frozen=True, slots=True)
+class RootFinding:
+    """An error or warning of the bus, task or message ``cause``.
+
+    ``dependents`` errors that only depend on it are left out.
+    """
+
+    cause: str
+    diagnostic: Diagnostic
+    dependents: int = 0
+
+    @property
+    def shown(self) -> Diagnostic:
+        """It with a note on those that are left out."""
+        one, count = self.diagnostic, self.dependents
+        if not count:
+            return one
+        what = "1 error that depends" if count == 1 else f"{count} errors that depend"
+        verb = "is" if count == 1 else "are"
+        text = f"{what} on this {verb} left out: check again when this is corrected"
+        return replace(one, notes=(*one.notes, (one.origin, text)))
+
+
 @dataclass
 class Causes:
     """The failures of an analysis: a cause is a bus, or a task or message, by its name."""
@@ -90,12 +113,6 @@ class Causes:
             self.dependents[cause] = self.dependents.get(cause, 0) + 1
         return cause is not None
 
-    def counted(self, cause: str, one: Diagnostic) -> Diagnostic:
-        """The error of a cause, with a note on those that are left out."""
-        count = self.dependents.get(cause, 0)
-        if not count:
-            return one
-        what = "1 error that depends" if count == 1 else f"{count} errors that depend"
-        verb = "is" if count == 1 else "are"
-        text = f"{what} on this {verb} left out: check again when this is corrected"
-        return replace(one, notes=(*one.notes, (one.origin, text)))
+    def counted(self, cause: str, one: Diagnostic) -> RootFinding:
+        """The error of a cause, with the number of those that are left out."""
+        return RootFinding(cause, one, self.dependents.get(cause, 0))

@@ -25,7 +25,7 @@ from ravenchart.gen.model.system import Carried, Chain, Gap
 from ravenchart.gen.origins import Origin
 
 from .bit_rates import blamed_on_a_bus
-from .causes import Causes, is_full
+from .causes import Causes, RootFinding, is_full
 
 MISSED = "RV-0901"
 """A task or message may complete after its deadline."""
@@ -61,12 +61,16 @@ def findings(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic,
     Deadlines of tasks and messages in ``but`` are left out. So is an error that only depends on
     another one, which has a note of how many there are.
     """
-    judged = partial(each_finding, but=but)
-    return blamed_on_a_bus(analysis, judged(analysis), judged)
+    return blamed_on_a_bus(analysis, _found(analysis, but), partial(each_finding, but=but))
 
 
 def each_finding(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnostic, ...]:
     """The same, without a look for a bus that is too slow."""
+    return tuple(one.shown for one in _found(analysis, but))
+
+
+def _found(analysis: Analysis, but: Collection[str]) -> tuple[RootFinding, ...]:
+    """The errors that do not depend on others, each with the number of those that do."""
     causes = Causes(analysis, [one for one in analysis.failed() if one not in but])
     found: list[tuple[str, Diagnostic]] = []
     for name in causes.failed:
@@ -85,7 +89,8 @@ def each_finding(analysis: Analysis, but: Collection[str] = ()) -> tuple[Diagnos
         *_of_queues(analysis),
         *_of_streams(analysis),
     )
-    return (*(causes.counted(name, one) for name, one in found), *others)
+    counted = (causes.counted(name, one) for name, one in found)
+    return (*counted, *(RootFinding("", one) for one in others))
 
 
 def _of_transfers(analysis: Analysis) -> Iterator[Diagnostic]:
@@ -131,7 +136,7 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
         notes=_task_notes(response, analysis),
         hint="lengthen the period of the message, or shorten what preempts the driver"
         if task.driver_of
-        else "lengthen its period, or move an activity to a slower processor",
+        else "lengthen its period, or move an activity to a processor with a longer period",
     )
 
 
@@ -206,12 +211,15 @@ def _of_message(response: FrameResponse, analysis: Analysis) -> Diagnostic:
             hint="lengthen periods, or raise the bit rate",
         )
     bound, deadline = rounded.against(response.bound, message.limit)
+    hint = "let its sender finish earlier, or set `deadline:`"
+    if response.interference:
+        hint = f"give it a lower identifier, {hint}"
     return error(
         MISSED,
         message.origin,
         f"message {message.name} misses its deadline: R = {bound} > D = {deadline}",
         notes=notes,
-        hint="give it a lower identifier, let its sender finish earlier, or set `deadline:`",
+        hint=hint,
     )
 
 

@@ -130,11 +130,11 @@ class _Chart:
         targets = [_short(leaf) for leaf in _leaves_of(move)]
         if "Now = Passing" in self.form.conditions[name]:
             self.shapes.setdefault(sources[0], Shape.CHOICE)
-        if any("(" in leaf for leaf in targets):
-            deep = any(leaf.startswith("Deep_") for leaf in targets)
+        if restored := [leaf for leaf in targets if "(" in leaf]:  # calls: of no state's name
+            deep = any(leaf.startswith("Deep_") for leaf in restored)
             self.shapes[sources[0]] = Shape.DEEP_HISTORY if deep else Shape.HISTORY
         elif not targets:
-            defers = name.startswith("Defer_")
+            defers = name in self.form.deferrals
             self.inside.setdefault(sources[0], []).append(
                 replace(label, effect=("defer",)) if defers else label
             )

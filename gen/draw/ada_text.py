@@ -3,9 +3,9 @@
 
 """The declared form of a chart, read from generated Ada text.
 
-The reader takes the types of the states and the functions `In_Source`, `Enabled` and `Target`
-from the specs of a component and of one of its regions. The proof rests on these. Guards stay
-text.
+The reader takes the types of the states and the functions `In_Source`, `Enabled`, `Target` and
+`Is_Deferral` from the specs of a component and of one of its regions. The proof rests on these.
+Guards stay text.
 """
 
 from __future__ import annotations
@@ -25,6 +25,8 @@ composite: "subtype" NAME "is" NAME "range" NAME ".." NAME
 region: NAME ":" NAME ":=" NAME
 sources: _HEAD _profile _cases _aspect?
 conditions: _HEAD _profile "(" NAME _group _AND_THEN _cases ")" _aspect?
+deferrals: _HEAD _profile "(" deferred ")" _aspect?
+deferred: NAME ("=" | "in") NAME ("|" NAME)*
 _aspect: "with" NAME
 _cases: "(" "case" NAME "is" condition ("," condition)* ")"
 moves: _HEAD _profile "(" "case" NAME "is" move ("," move)* ")"
@@ -89,6 +91,8 @@ class Declared:
     regions: tuple[DrawnRegion, ...]
     conditions: dict[str, tuple[str, ...]]
     moves: dict[str, str | Leaves]
+    deferrals: frozenset[str]
+    """The transitions that keep their event for later."""
 
 
 @v_args(meta=True)
@@ -144,6 +148,14 @@ class _Reader(Transformer[Token, object]):
         """`Target`."""
         return _rows(parts)
 
+    def deferred(self, _: Meta, names: Sequence[Token]) -> frozenset[str]:
+        """The transitions with which a parameter is compared."""
+        return frozenset(map(str, names[1:]))
+
+    def deferrals(self, _: Meta, parts: Sequence[object]) -> frozenset[str]:
+        """`Is_Deferral`."""
+        return next(part for part in parts if isinstance(part, frozenset))
+
 
 def _rows(parts: Sequence[object]) -> dict[str, object]:
     """The alternatives of a case, by transition."""
@@ -158,7 +170,7 @@ _RECORD = re.compile(r"type \w+ is record ")
 _PARSER = Lark(
     GRAMMAR,
     parser="lalr",
-    start=["enumeration", "composite", "region", "sources", "conditions", "moves"],
+    start=["enumeration", "composite", "region", "sources", "conditions", "moves", "deferrals"],
     propagate_positions=True,
 )
 
@@ -173,6 +185,7 @@ def declared(spec: str, component: str) -> Declared:
     if not (package and all(functions) and inside):
         raise NotDeclaredError("no functions Enabled and Target over the states of a region")
     sources, conditions, moves = map(_read, ("sources", "conditions", "moves"), functions)
+    deferrals = _function("Is_Deferral", spec)  # a region without deferrals has none
     parts = [_RECORD.sub("", part) for part in _declarations(inside[1])]
     return Declared(
         ".".join(package[1].split(".")[-2:]),
@@ -181,6 +194,7 @@ def declared(spec: str, component: str) -> Declared:
         tuple(_read("region", part) for part in parts if _COMPONENT.match(part)),
         {name: (*sources.get(name, ()), *said) for name, said in conditions.items()},
         moves,
+        _read("deferrals", deferrals) if deferrals else frozenset(),
     )
 
 

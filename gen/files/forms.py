@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.language.names import meant, nearest
+from ravenchart.gen.language.names import nearest, nearest_hint
 from ravenchart.gen.origins import Origin
 
 from .located import FormPath, Map, Seq, scalar_value
@@ -156,9 +156,9 @@ class ErrorPlace:
         """The error in our words."""
         kind, context = item["type"], item.get("ctx", {})
         if kind == "coded":
-            message = context["message"]
-            if message.startswith("must "):
-                message = f"{self.subject} {message}{self._but()}"
+            return error(context["code"], self.origin, context["message"])
+        if kind == "required":
+            message = f"{self.subject} {context['message']}{self._but()}"
             return error(context["code"], self.origin, message)
         if kind == "choice":
             return error("RV-0202", self.origin, item["msg"], hint=self._typing_hint())
@@ -200,7 +200,7 @@ class ErrorPlace:
         if isinstance(self.value, Seq):
             return ", not a list"
         if self.value == "":
-            return ", and here is nothing"
+            return ", but is empty"
         if isinstance(self.value, bool):
             return f", not `{str(self.value).lower()}`"
         text = str(self.value)
@@ -211,8 +211,8 @@ class ErrorPlace:
         if not isinstance(self.value, Map) or not self.value:
             return None
         for name in self.value:
-            hint = meant(name, SHAPES)
-            if hint is not None and hint.startswith("did") and name not in SHAPES:
+            hint = nearest_hint(name, SHAPES)
+            if hint is not None and name not in SHAPES:
                 return hint
         return None
 
@@ -229,9 +229,9 @@ class ErrorPlace:
         if "(" in name or ")" in name or " " in name:
             hint = "inside { }, put an expression that has a comma into quotes"
             return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
-        near = meant(name, [*allowed, REQUIREMENTS])
+        near = nearest_hint(name, [*allowed, REQUIREMENTS])
         listed = f"the keys here: {', '.join(allowed)}"
-        hint = f"{near} {listed}" if near and near.startswith("did") else listed
+        hint = f"{near} {listed}" if near else listed
         return error("RV-0201", origin, f"the key `{name}` is unknown here", hint=hint)
 
 

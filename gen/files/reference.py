@@ -87,6 +87,8 @@ TITLES: Mapping[str, str] = {
 INTRODUCTION = """\
 # Reference of the model language
 
+For engineers who write models. The page lists every key, with its meaning, type and range.
+
 Written by `make docs` from the schema that the loader checks models against; do not
 edit. For editors, the same schema is in [model.schema.json](model.schema.json). The errors are
 listed in [errors.md](errors.md).

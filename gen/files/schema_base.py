@@ -66,7 +66,7 @@ def optional(description: str, **limits: Any) -> Any:
 def _name(text: str) -> str:
     problem = problem_of(text)
     if problem is not None:
-        raise PydanticCustomError("coded", "{message}", {"code": problem[0], "message": problem[1]})
+        raise _coded(*problem)
     return text
 
 
@@ -85,13 +85,19 @@ def _database_text(text: str) -> str:
 
 
 def _coded(code: str, message: str) -> PydanticCustomError:
+    """An error whose message is a sentence."""
     return PydanticCustomError("coded", "{message}", {"code": code, "message": message})
+
+
+def _required(code: str, message: str) -> PydanticCustomError:
+    """An error whose message follows the subject of the sentence and precedes the value found."""
+    return PydanticCustomError("required", "{message}", {"code": code, "message": message})
 
 
 def _positive(value: object) -> object:
     parsed = _duration(value)
     if parsed == 0:
-        raise _coded("RV-0205", "must be longer than 0")
+        raise _required("RV-0205", "must be longer than 0")
     return parsed
 
 
@@ -99,9 +105,9 @@ def _duration(value: object) -> Ns:
     parsed = parsed_duration(value) if isinstance(value, str) else None
     if parsed is None:
         shape = "a duration such as `20 ms` (ns, us, ms or s; whole nanoseconds)"
-        raise _coded("RV-0205", f"must be {shape}")
+        raise _required("RV-0205", f"must be {shape}")
     if parsed > LONGEST:
-        raise _coded("RV-0205", "must be at most one hour")
+        raise _required("RV-0205", "must be at most one hour")
     return parsed
 
 
@@ -112,21 +118,21 @@ def _flag(value: object) -> object:
 def _stack(value: object) -> object:
     parsed = quantity(value, BYTES) if isinstance(value, str) else None
     if parsed is None or not 2**10 <= parsed <= 2**26:
-        raise _coded("RV-0206", "must be a size such as `32 KiB`, from 1 KiB to 64 MiB")
+        raise _required("RV-0206", "must be a size such as `32 KiB`, from 1 KiB to 64 MiB")
     return parsed
 
 
 def _bit_rate(value: object) -> object:
     parsed = quantity(value, BITS_PER_SECOND) if isinstance(value, str) else None
     if parsed is None or not 10_000 <= parsed <= 1_000_000:
-        raise _coded("RV-0207", "must be a bit rate such as `500 kbit/s`, 10 kbit/s to 1 Mbit/s")
+        raise _required("RV-0207", "must be a bit rate such as `500 kbit/s`, 10 kbit/s to 1 Mbit/s")
     return parsed
 
 
 def _data_rate(value: object) -> object:
     parsed = quantity(value, BITS_PER_SECOND) if isinstance(value, str) else None
     if parsed is None or not 10_000 <= parsed <= 10_000_000:
-        raise _coded("RV-0207", "must be a bit rate such as `2 Mbit/s`, 10 kbit/s to 10 Mbit/s")
+        raise _required("RV-0207", "must be a bit rate such as `2 Mbit/s`, 10 kbit/s to 10 Mbit/s")
     return parsed
 
 
@@ -193,7 +199,7 @@ DataRate = Annotated[int, BeforeValidator(_data_rate), WithJsonSchema(_bit_rate_
 def _requirement(value: object) -> object:
     well_formed = isinstance(value, str) and re.match(REQUIREMENT, value)
     if not well_formed or len(str(value)) > LONGEST_REQUIREMENT:
-        raise _coded("RV-0211", "must be the id of a requirement such as `R-12`")
+        raise _required("RV-0211", "must be the id of a requirement such as `R-12`")
     return value
 
 
@@ -214,9 +220,9 @@ RequirementId = Annotated[
 
 def _scalar(value: object) -> int | bool | str:
     if not isinstance(value, int | str):
-        raise _coded("RV-0203", "must be a single value")
+        raise _required("RV-0203", "must be a single value")
     if value == "":
-        raise _coded("RV-0203", "must be a value")
+        raise _required("RV-0203", "must be a value")
     return value
 
 

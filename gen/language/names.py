@@ -148,12 +148,17 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     return lowered[near[0]] if near else None
 
 
+def nearest_hint(name: str, known: Iterable[str]) -> str | None:
+    """A hint for an unknown name: the nearest one; None where none is near."""
+    near = nearest(name, known)
+    return None if near is None else f"did you mean `{near}`?"
+
+
 def meant(name: str, known: Iterable[str]) -> str | None:
     """A hint for an unknown name: the nearest one, or else the few that there are."""
     names = list(dict.fromkeys(known))
-    near = nearest(name, names)
-    if near is not None:
-        return f"did you mean `{near}`?"
+    if (hint := nearest_hint(name, names)) is not None:
+        return hint
     return f"one of: {', '.join(names)}" if 0 < len(names) <= 12 else None
 
 

@@ -26,7 +26,7 @@ is
          P.Seed := Next (P.Seed);
          Fault :=
            (Kind     => Bus_Faults.Disturbed_Bit,
-            Position => Disturbed_Bit (P.Seed),
+            Position => Place (P.Seed),
             others   => <>);
       end if;
    end Draw;

@@ -16,7 +16,7 @@ from ravenchart.failures import OK, WRONG, Refused
 from ravenchart.terminal import progress
 
 from . import bounds, common, plain
-from .answer import say
+from .answer import add_option, say
 
 if TYPE_CHECKING:
     from ravenchart.analysis.findings.differences import Differences, Figures
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    common.add_model(sub)
+    common.add_model(sub, "or a plain file, CSV or JSON")
     sub.add_argument(
         "--html", type=Path, metavar="FILE", help="write the report as a page of HTML there too"
     )
@@ -38,10 +38,10 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     bounds.add_arguments(sub)
     sub.add_argument(
         "--compare", type=Path, metavar="OLD",
-        help="say what changed since OLD: a model, a plain file or an answer of --json",
+        help="report the changes since OLD: a model, a plain file or an answer of --json",
     )  # fmt: skip
     output = sub.add_mutually_exclusive_group()
-    output.add_argument("--json", action="store_true", help="print everything as JSON")
+    add_option(output)
     output.add_argument("--export", choices=plain.EXPORTS, help="print the system for that tool")
 
 

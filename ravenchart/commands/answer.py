@@ -11,6 +11,7 @@ text as without `--json`. docs/answer.schema.json is made of `Answer`, and of th
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import sys
@@ -40,6 +41,11 @@ NAMED = re.compile(r"(?:(?P<file>[^\n]+?): )?(?P<severity>error|warning|note): (
 EXCERPT = re.compile(r" *\d* \| .*")
 """A line of the file that a message is about."""
 HINT = re.compile(r"\s*hint: (?P<message>.*)")
+
+
+def add_option(sub: argparse._ActionsContainer) -> None:
+    """Declare `--json`."""
+    sub.add_argument("--json", action="store_true", help="print the answer as one JSON object")
 
 
 @dataclass(slots=True)

@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from ravenchart.workbench.pages import Pages
 
 
-def add_model(sub: argparse.ArgumentParser) -> None:
-    """The model that the command is about."""
-    sub.add_argument(
-        "model", type=Path, metavar="MODEL",
-        help="the model's YAML file, or MODEL@NAME: a deployment of it",
-    )  # fmt: skip
+def add_model(sub: argparse.ArgumentParser, other: str = "") -> None:
+    """The model that the command is about; ``other`` names what it takes in place of one."""
+    text = "the model's YAML file, or MODEL@NAME: a deployment of it"
+    if other:
+        text = f"the model's YAML file, MODEL@NAME (a deployment of it), {other}"
+    sub.add_argument("model", type=Path, metavar="MODEL", help=text)
 
 
 def add_driver(sub: argparse.ArgumentParser) -> None:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 from ravenchart.failures import OK, UNUSABLE
 from ravenchart.paths import PACKAGE, ROOT, cache, version, work
+from ravenchart.tools.toolchain import GET_GNATPROVE
 
 from .results import DoctorResult, Tool
 
@@ -32,7 +33,7 @@ class NeededTool:
 TOOLS = (
     NeededTool("gcc", "compiles Ada", "sudo apt-get install gnat", needed=True),
     NeededTool("gprbuild", "builds programs", "sudo apt-get install gprbuild", needed=True),
-    NeededTool("gnatprove", "`prove`", "alr get gnatprove, and its bin on PATH"),
+    NeededTool("gnatprove", "`prove`", GET_GNATPROVE),
     NeededTool("gcov", "`tests --coverage`", "sudo apt-get install gcc"),
     NeededTool("dot", "`draw`", "sudo apt-get install graphviz"),
 )

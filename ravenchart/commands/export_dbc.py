@@ -37,8 +37,10 @@ def execute(options: argparse.Namespace) -> int:
     system = common.checked(options, deadlines=False).system
     buses = {bus.name: bus for bus in system.buses}
     name = options.bus or (next(iter(buses)) if len(buses) == 1 else None)
+    if not buses:
+        raise Refused(f"{options.model}: error: the model has no bus")
     if name not in buses:
-        hint = meant(options.bus or "", buses) or "the model has none"
+        hint = meant(options.bus or "", buses) or f"one of: {', '.join(buses)}"
         told = "name one with `--bus`" if options.bus is None else f"no bus is called {options.bus}"
         raise Refused(f"{options.model}: error: {told}: {hint}")
     found = exporting.exported(system, buses[name], options.like, lenient=options.lenient)

@@ -18,10 +18,13 @@ from ravenchart.paths import ROOT, work
 
 from . import children
 
+GET_GNATPROVE = 'alr get gnatprove && PATH="$(ls -d "$PWD"/gnatprove_*/bin):$PATH"'
+"""The command that installs gnatprove for the shell that it is given to."""
+
 INSTALL_HINT = {
     "gprbuild": "install the Debian packages gnat and gprbuild (`make setup` does)",
     "dot": "install the Debian package graphviz (`make setup` does)",
-    "gnatprove": "install gnatprove with Alire: `alr get gnatprove`, and put its bin on PATH",
+    "gnatprove": f"install gnatprove with Alire: `{GET_GNATPROVE}`",
 }
 
 

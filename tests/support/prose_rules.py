@@ -34,6 +34,7 @@ WORDS = {
     r"nobody (asked|acknowledges|reads|can)": "no node, no reader",
     r"leads nowhere": "is not connected",
     r"and here (a|no|is)\b.*(wanted|value|argument|none)": "expected ..., found ...",
+    r"and here is nothing": "but is empty",
 }
 """Expressions that have a better word in the glossary."""
 

@@ -60,7 +60,8 @@ def test_a_missed_deadline_reads_like_a_compilers_error() -> None:
         "model.yaml:41:3: note: control itself runs for up to 4.3 ms\n"
         "model.yaml:12:3: note: can_rx, period 2 ms, preempts control: 5 x 700 us = 3.5 ms\n"
         "model.yaml:20:3: note: trajectory, period 5 ms, preempts control: 2 x 1 ms = 2 ms\n"
-        "model.yaml:41:3: hint: lengthen its period, or move an activity to a slower processor"
+        "model.yaml:41:3: hint: lengthen its period, or move an activity to a processor with a "
+        "longer period"
     )
     assert first.message == (
         "logger has no response-time bound: it and the tasks that preempt it need 188 % of the "

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -21,9 +22,9 @@ TEXT = ROBOT.read_text(encoding="utf-8")
 RATE = "500 kbit/s"
 
 
-def late(text: str) -> tuple[Diagnostic, ...]:
-    """The errors of time of the robot with that main file."""
-    system = load(ROBOT, over({str(ROBOT): text.encode()})).system
+def late(text: str, model: Path = ROBOT) -> tuple[Diagnostic, ...]:
+    """The errors of time of a model with that main file."""
+    system = load(model, over({str(model): text.encode()})).system
     assert system is not None
     return tuple(one for one in findings(analyse(system)) if one.is_error)
 
@@ -65,3 +66,30 @@ def test_an_overloaded_bus_has_its_own_error_with_the_rate() -> None:
     (one,) = late(TEXT.replace(RATE, "50 kbit/s"))
     assert one.code == "RV-0903"
     assert one.hint is not None and "`bit_rate: 500 kbit/s` is the lowest" in one.hint
+
+
+DEVICE = ROOT / "examples" / "canopen_device" / "model.yaml"
+
+
+@pytest.mark.parametrize(("rate", "count"), [("10", 18), ("20", 18), ("50", 16)])
+def test_errors_beside_an_overload_that_its_rate_removes_are_left_out(
+    rate: str, count: int
+) -> None:
+    text = DEVICE.read_text(encoding="utf-8")
+    (one,) = late(text.replace(RATE, f"{rate} kbit/s"), DEVICE)
+    assert one.code == "RV-0903"
+    assert one.hint is not None and "`bit_rate: 500 kbit/s` is the lowest" in one.hint
+    assert one.notes[-1][1] == (
+        f"{count} errors that depend on this are left out: check again when this is corrected"
+    )
+    assert late(text, DEVICE) == ()
+
+
+def test_errors_beside_an_overload_are_reported_where_no_rate_removes_all() -> None:
+    text, nmt = DEVICE.read_text(encoding="utf-8"), "to: device.nmt_in, period: 10 ms,"
+    assert text.count(nmt) == 1
+    text = text.replace(nmt, f"{nmt} deadline: 50 us,")
+    found = late(text.replace(RATE, "20 kbit/s"), DEVICE)
+    assert [one.code for one in found] == ["RV-0901", "RV-0901", "RV-0903"]
+    first = next(one for one in found if one.message.startswith("message nmt "))
+    assert first.hint == "let its sender finish earlier, or set `deadline:`"  # id: 0x000

@@ -19,6 +19,7 @@ from ravenchart.gen.draw.picture import Picture, Shape
 from ravenchart.gen.emit.ada.text import print_unit
 from ravenchart.gen.emit.charts.declared import emit_region
 from ravenchart.gen.emit.components.packages import emit_component
+from ravenchart.gen.model.component import Component
 from ravenchart.paths import ROOT
 from tests.support.every_construct import every_construct
 from tests.support.plant_model import plant
@@ -30,9 +31,9 @@ CHARTS = sorted(
 )
 
 
-def _texts() -> dict[str, str]:
+def _texts(component: Component | None = None) -> dict[str, str]:
     """The specs of the component and of its region, by file name."""
-    component = every_construct()
+    component = component or every_construct()
     system = replace(plant(), components=(component,))
     region = emit_region(system, component, component.region("Life"), "header")
     units = (emit_component(system, component, "header"), *region)
@@ -41,6 +42,15 @@ def _texts() -> dict[str, str]:
 
 def _picture() -> Picture:
     return picture_of_ada("plant-every-life.ads", _texts().get)
+
+
+def _renamed(old: str, new: str) -> Component:
+    """The component with another name of one transition."""
+    component = every_construct()
+    life = component.region("Life")
+    moves = tuple(replace(t, name=new if t.name == old else t.name) for t in life.transitions)
+    regions = (replace(life, transitions=moves), *component.regions[1:])
+    return replace(component, regions=regions)
 
 
 def _arrows(chart: Picture) -> set[tuple[str, str, str]]:
@@ -90,6 +100,25 @@ def test_internal_transitions_and_deferrals_stand_in_their_state() -> None:
     inside = {v.name: [b.text for b in v.behaviours] for v, _ in _picture().vertices()}
     assert inside["Work"] == ["Note"]
     assert inside["Idle"] == ["Go / defer"]
+
+
+def test_a_transition_named_like_a_deferral_is_drawn_as_a_transition() -> None:
+    texts = _texts(_renamed("note", "defer_portion"))
+    assert "Defer_Portion" in texts["plant-every-life.ads"]
+    chart = picture_of_ada("plant-every-life.ads", texts.get)
+    inside = {v.name: [b.text for b in v.behaviours] for v, _ in chart.vertices()}
+    assert (inside["Work"], inside["Idle"]) == (["Note"], ["Go / defer"])
+
+
+def test_a_shallow_history_that_enters_a_state_named_like_a_deep_one_is_shallow() -> None:
+    texts = _texts()
+    spec = texts["plant-every-life.ads"]
+    beside = "Top => Shallow_Work (Past), In_Left_Half => Life_States.Deep_Water"
+    changed = spec.replace("Top => Shallow_Work (Past)", beside, 1)
+    assert changed != spec
+    chart = picture_of_ada("plant-every-life.ads", {**texts, "plant-every-life.ads": changed}.get)
+    shapes = {v.name: v.shape for v, _ in chart.vertices()}
+    assert (shapes["Recent"], shapes["All_Of_It"]) == (Shape.HISTORY, Shape.DEEP_HISTORY)
 
 
 def test_a_changed_target_is_seen_in_the_picture() -> None:

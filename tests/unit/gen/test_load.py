@@ -32,6 +32,11 @@ def test_the_small_model_loads_without_a_word() -> None:
     assert loaded(PUMP).diagnostics == ()
 
 
+def test_a_list_without_a_value_is_empty_in_the_message() -> None:
+    found = loaded("system: House\ntypes:\n  Level: {range: }\n").diagnostics
+    assert "`range` must be a list, but is empty" in [one.message for one in found]
+
+
 def test_missing_main_file_is_an_error_at_its_name(tmp_path: Path) -> None:
     result = load(tmp_path / "none.yaml")
     assert [item.code for item in result.diagnostics] == ["RV-0101"]

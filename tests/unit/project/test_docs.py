@@ -18,6 +18,12 @@ PAGES = (
     *sorted((ROOT / "docs").glob("*.md")),
     ROOT / "proofs/assumptions.md",
 )
+READ = (
+    *(page for page in PAGES if page != ROOT / "README.md"),
+    ROOT / "examples" / "README.md",
+    *sorted((ROOT / "examples").glob("*/README.md")),
+)
+"""The pages that name their reader: all but the first page of the repository."""
 SOURCE = re.compile(
     r"`((?:gen|analysis|behaviour|hw_can|ravenchart|spark_runtime|tests|proofs|scripts)"
     r"/[\w./-]+\.(?:py|toml|ad[bs]|gpr|sh|md))`"
@@ -37,6 +43,16 @@ def test_files_modules_and_links_of_a_page_exist(page: Path) -> None:
         if not place.is_dir() and not place.with_suffix(".py").exists():
             lost.append(name)
     assert lost == []
+
+
+READERS = re.compile(r"For (?:engineers|those|anybody|assessors|users)\b")
+
+
+@pytest.mark.parametrize("page", READ, ids=lambda page: str(page.relative_to(ROOT)))
+def test_a_page_begins_with_its_reader(page: Path) -> None:
+    title, first = page.read_text(encoding="utf-8").split("\n\n")[:2]
+    assert title.startswith("# ") and "\n" not in title
+    assert READERS.match(first), first
 
 
 PARTS = ["Problem", "Forces", "Dynamic_form", "Liability", "Static_form", "Proof", "Code", "Test"]

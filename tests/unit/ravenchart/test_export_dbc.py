@@ -16,6 +16,7 @@ from cantools.database import Database
 from ravenchart.command_line import main
 from ravenchart.databases.database import Periods, imported
 from ravenchart.failures import OK, WRONG
+from ravenchart.paths import ROOT
 from tests.unit.ravenchart.test_import_database import HEAD, whole
 
 LINE = (
@@ -139,3 +140,10 @@ def test_without_an_original_it_is_the_database_that_is_generated(
     assert {m.name for m in second.messages} == {m.name for m in first.messages} - theirs
     assert main(["export-dbc", str(model), "--bus", "bis"]) == WRONG
     assert "no bus is called bis: did you mean `bus`" in capsys.readouterr().err
+
+
+def test_a_model_without_a_bus_has_no_database(capsys: pytest.CaptureFixture[str]) -> None:
+    model = str(ROOT / "examples" / "three_components" / "model.yaml")
+    for bus in ([], ["--bus", "line"]):
+        assert main(["export-dbc", model, *bus]) == WRONG
+        assert capsys.readouterr().err == f"{model}: error: the model has no bus\n"

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from ravenchart.command_line import COMMANDS, main
 from ravenchart.commands.new import project
 from ravenchart.gen.diagnostics import CODES
 from ravenchart.gen.explanations import MODEL, explanations
+from ravenchart.tools.toolchain import GET_GNATPROVE
 
 
 def test_a_folder_that_is_there_is_not_touched(
@@ -110,6 +113,20 @@ def test_doctor_is_status_2_where_no_program_can_be_built(
     assert main(["doctor"]) == 2
     told = capsys.readouterr().out
     assert "missing  gprbuild" in told and "sudo apt-get install gprbuild" in told
+    assert re.search(r"absent +gnatprove +`prove`: alr get gnatprove && PATH=", told)
+
+
+def test_the_command_that_doctor_prints_puts_gnatprove_on_path(tmp_path: Path) -> None:
+    alr = tmp_path / "alr"
+    alr.write_text("#!/bin/sh\nmkdir -p gnatprove_14.1.1_0123abcd/bin\n")
+    alr.chmod(0o755)
+    here = tmp_path / "a folder"
+    here.mkdir()
+    done = subprocess.run(
+        ["/bin/sh", "-ec", f'{GET_GNATPROVE}; echo "$PATH"'], cwd=here, text=True,
+        capture_output=True, check=True, env={"PATH": f"{tmp_path}:/usr/bin:/bin"},
+    )  # fmt: skip
+    assert done.stdout.startswith(f"{here}/gnatprove_14.1.1_0123abcd/bin:{tmp_path}:")
 
 
 def test_every_command_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
