@@ -26,7 +26,7 @@ is
          P.Seed := Next (P.Seed);
          Fault :=
            (Kind     => Bus_Faults.Disturbed_Bit,
-            Position => Place (P.Seed),
+            Position => Drawn_Position (P.Seed),
             others   => <>);
       end if;
    end Draw;

@@ -50,7 +50,8 @@ is
    with Global => null;
    --  The sequence of Knuth and Lewis, for its upper bits.
 
-   function Place (Seed : Interfaces.Unsigned_32) return Wire.Bit_Index
+   function Drawn_Position (Seed : Interfaces.Unsigned_32)
+     return Wire.Bit_Index
    is (1 + Natural (Interfaces.Shift_Right (Seed, 16) mod 160))
    with Global => null;
    --  The position of the random bit: anywhere in a classic frame.
