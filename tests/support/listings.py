@@ -141,6 +141,11 @@ def script(listing: Listing) -> str:
 
 def calls(text: str) -> Iterator[list[str]]:
     """The words of each call in a script, without variables, `sudo` and what is the shell's."""
+    return map(called, whole_calls(text))
+
+
+def whole_calls(text: str) -> Iterator[list[str]]:
+    """All words of each call in a script."""
     for line in text.replace("\\\n", " ").splitlines():
         lexer = shlex.shlex(line, posix=True, punctuation_chars=True)
         lexer.whitespace_split = True
@@ -148,7 +153,7 @@ def calls(text: str) -> Iterator[list[str]]:
         for word in (*lexer, ";"):
             if re.fullmatch(r"[|&;]+", word):
                 if words:
-                    yield called(words)
+                    yield words
                 words = []
             else:
                 words.append(word)
@@ -163,6 +168,14 @@ def called(words: list[str]) -> list[str]:
         return words
     numbered = words[ends[0] - 1] in ("1", "2")  # of the stream
     return words[: ends[0] - numbered]
+
+
+def written_to(words: list[str]) -> str | None:
+    """The file that a call writes its standard output to."""
+    for one, word, file in zip(words, words[1:], words[2:], strict=False):
+        if word == ">" and one != "2":
+            return file
+    return None
 
 
 def listing(page: str, name: str) -> str:

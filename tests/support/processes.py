@@ -10,14 +10,16 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 from uuid import uuid4
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCHER = ROOT / ".venv" / "bin" / "ravenchart"
 PYTHON = sys.executable
+Stream = IO[str] | int
 
 
 def _heeding_hang_up() -> None:
@@ -28,12 +30,22 @@ def _heeding_hang_up() -> None:
 class Marked:
     """A started command; whatever it starts inherits its mark."""
 
-    def __init__(self, words: Sequence[str | Path], where: Path = ROOT) -> None:
+    def __init__(
+        self,
+        words: Sequence[str | Path],
+        where: Path = ROOT,
+        *,
+        given: Stream = subprocess.DEVNULL,
+        printed: Stream = subprocess.PIPE,
+        errors: Stream = subprocess.PIPE,
+        names: Mapping[str, str] | None = None,
+    ) -> None:
+        """``names`` are more of its environment."""
         self._mark = f"MARK_OF_A_TEST={uuid4()}"
         name, _, value = self._mark.partition("=")
         self.process = subprocess.Popen(
-            words, cwd=where, env={**os.environ, name: value}, text=True,
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            words, cwd=where, env={**os.environ, **(names or {}), name: value}, text=True,
+            stdin=given, stdout=printed, stderr=errors,
             start_new_session=True, preexec_fn=_heeding_hang_up,
         )  # fmt: skip
 

@@ -12,6 +12,7 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
+from ravenchart.proof import proving
 from ravenchart.tools import toolchain
 
 PAGE = (ROOT / "docs" / "getting-started.md").read_text()
@@ -90,7 +91,9 @@ def test_the_tank_is_proved_and_the_unbounded_level_of_the_page_is_not(
     tank: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     model = str(tank / "model.yaml")
-    assert main(["prove", model]) == 0
+    record = tank / "proof.toml"
+    assert main(["prove", model, "--record", str(record)]) == 0
+    assert proving.stale_sources(record) == ()
     assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
     body = tank / "user" / "tank_system-plant-activities.adb"
     bounded = "Unit_Mm'Max (0, Unit_Mm'Min (2_000, Height + Change))"

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Calls in the docs are executed: those of examples here, those of each other command elsewhere."""
+"""Calls in the docs are executed: quick ones here, others by tests/system/test_page_calls.py."""
 
 from __future__ import annotations
 
@@ -11,50 +11,12 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
-from tests.support.listings import calls, listings, script
+from tests.support.page_calls import HERE, TABLE, calls_of_pages, table
 
-HERE = {"analyse", "check", "check-certificate", "explain", "generate", "simulate"}
-"""Commands that take seconds and leave the examples as they are."""
-
-ELSEWHERE = {
-    "allocate": "tests/unit/ravenchart/test_allocate_command.py",
-    "build": "tests/system/test_wheel.py",
-    "bus": "tests/system/test_wheel.py",
-    "doctor": "tests/system/test_wheel.py",
-    "evidence": "tests/unit/ravenchart/test_evidence.py",
-    "export-dbc": "tests/unit/ravenchart/test_export_dbc.py",
-    "import": "tests/unit/ravenchart/test_import_database.py",
-    "loopback": "tests/system/test_wheel.py",
-    "measure": "tests/system/test_measure.py",
-    "monitor": "tests/system/test_watched_controllers.py",
-    "new": "tests/system/test_wheel.py",
-    "prove": "tests/system/test_wheel.py",
-    "requirements": "tests/unit/ravenchart/test_evidence.py",
-    "run": "tests/system/test_wheel.py",
-    "shell": "tests/system/test_shell_sessions.py",
-    "tests": "tests/unit/behaviour/test_cases.py",
-    "trace": "tests/unit/gen/test_recorded_values.py",
-    "workbench": "tests/support/workbench.py",
-}
-"""Commands of other listings, and a file of the tests that calls them."""
-
-WORDS = [
-    words[1:]
-    for one in listings()
-    if one.language in ("sh", "console")
-    for words in calls(script(one))
-    if words[0].removeprefix(".venv/bin/") == "ravenchart"
-]
-
-
-def is_here(words: list[str]) -> bool:
-    """Whether a call names files of this repository, or none."""
-    if words[0] not in HERE:
-        return False
-    return words[0] == "explain" or words[1].startswith(("examples/", "tests/"))
-
-
-CALLS = sorted({tuple(words) for words in WORDS if is_here(words)})
+CALLS = sorted({one.words for one in calls_of_pages() if one.is_here})
+OTHERS = {(one.page, one.text): one for one in calls_of_pages() if not one.is_here}
+PAGES, REASONS = table()
+TABLED = {(name, text): how for name, page in PAGES.items() for text, how in page.calls.items()}
 
 
 @pytest.mark.parametrize("words", CALLS, ids=" ".join)
@@ -74,13 +36,28 @@ def test_a_call_of_the_docs_succeeds(
         assert (tmp_path / words[words.index("--html") + 1]).is_file()
 
 
-def test_every_other_command_of_the_docs_is_called_by_a_test() -> None:
+def test_every_other_call_is_in_the_table_and_no_call_that_no_page_has() -> None:
     assert len(CALLS) > 15
-    assert {words[0] for words in WORDS} - HERE == set(ELSEWHERE)
-    assert {words[0] for words in CALLS} == HERE
-    lost = [
-        command
-        for command, file in ELSEWHERE.items()
-        if f'"{command}"' not in (ROOT / file).read_text(encoding="utf-8")
-    ]
-    assert lost == []
+    assert {words[0] for words in CALLS} <= HERE
+    assert OTHERS.keys() - TABLED.keys() == set(), f"not in {TABLE.name}"
+    assert TABLED.keys() - OTHERS.keys() == set(), f"in {TABLE.name}, and on no page"
+
+
+def test_every_call_that_is_not_executed_has_a_reason_and_a_test_of_the_same_command() -> None:
+    excused = {at: how for at, how in TABLED.items() if how.excused}
+    assert {how.excused for how in excused.values()} == set(REASONS)
+    for at, how in excused.items():
+        text = (ROOT / how.test).read_text(encoding="utf-8")
+        assert how.has and how.has in text, at
+    assert len(excused) < len(TABLED) / 3
+
+
+def test_every_word_that_is_replaced_is_on_its_page() -> None:
+    for name, page in PAGES.items():
+        executed = [text for text, how in page.calls.items() if not how.excused]
+        for word in page.words:
+            assert any(word in text for text in executed), (name, word)
+        for text, how in page.calls.items():
+            assert all(word in text for word in how.words), (name, text)
+            assert isinstance(how.status, list) or how.status in (0, 130) or how.why, (name, text)
+            assert not isinstance(how.status, list) or how.why, (name, text)
