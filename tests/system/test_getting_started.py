@@ -12,8 +12,8 @@ import pytest
 
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
-from ravenchart.proof import proving
 from ravenchart.tools import toolchain
+from tests.support.proof_records import stale_sources
 
 PAGE = (ROOT / "docs" / "getting-started.md").read_text()
 
@@ -93,7 +93,7 @@ def test_the_tank_is_proved_and_the_unbounded_level_of_the_page_is_not(
     model = str(tank / "model.yaml")
     record = tank / "proof.toml"
     assert main(["prove", model, "--record", str(record)]) == 0
-    assert proving.stale_sources(record) == ()
+    assert stale_sources(record) == ()
     assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", capsys.readouterr().out)
     body = tank / "user" / "tank_system-plant-activities.adb"
     bounded = "Unit_Mm'Max (0, Unit_Mm'Min (2_000, Height + Change))"
