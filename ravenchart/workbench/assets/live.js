@@ -82,7 +82,6 @@ function Node({ of, replay, nodes }) {
       one.name, one.due ?? "-", one.completed, one.misses, one.last_response === null ? "-" : time(one.last_response), time(one.worst_response), time(one.bound),
       one.bound && html`<${Share} of=${one.worst_response / one.bound} />`,
       html`<${Word} met=${one.word === "ok"} text=${one.word} />`])} />
-    ${!(replay && of.counted === null) && html`<${Responses} rows=${of.responses} note=${of.responses_note} />`}
     ${!(replay && of.counted === null) && html`<p class=${any(of.faults) ? "error" : ""}>faults: ${counts(of.faults)}</p>
     <p class=${any(of.lost) ? "error" : ""}>lost: ${counts(of.lost)}</p>`}
     ${!replay && html`<p class="remark">${of.overlooked}</p>`}
@@ -99,6 +98,7 @@ function Node({ of, replay, nodes }) {
       one.name, `${one.waiting ?? "?"} of ${one.depth}`, one.highest ?? "-"])} />
     <${Table} names=${["port, event, message", "", "count>", "last>"]} rows=${of.traffic.map((one) => [
       one.name, one.state ?? one.what, one.count, `${((of.now - one.last) / 1e9).toFixed(1)} s ago`])} />
+    ${!(replay && of.counted === null) && html`<${Responses} rows=${of.responses} note=${of.responses_note} />`}
     ${of.said.map((text) => html`<p class="error">${text}</p>`)}
     <p class="remark">Not seen: ${of.not_seen.join("; ")}.</p></section>`;
 }
