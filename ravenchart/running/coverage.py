@@ -69,7 +69,9 @@ def switches(home: Path) -> tuple[list[str], dict[str, str]]:
     """Arguments of gprbuild for a program that counts, and its scenario; both for this folder."""
     policy = home / "coverage.adc"
     policy.write_text(_NO_CONTRACTS, encoding="utf-8")
-    compiler = ["-O0", "-fno-inline", "-gnatp", "--coverage", f"-gnatec={policy}"]
+    #  a line that is inlined has its branches once for each call, where inlining precedes counting
+    inlined_late = ["-fno-inline", "-fdisable-tree-einline"]
+    compiler = ["-O0", *inlined_late, "-gnatp", "--coverage", f"-gnatec={policy}"]
     words = ["-cargs:Ada", *compiler, "-largs", "--coverage", "-margs"]
     return words, {"MODE": "release", "RAVENCHART_OBJECTS": str(home / "runtime")}
 

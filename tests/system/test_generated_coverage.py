@@ -31,7 +31,8 @@ def test_the_cases_execute_the_whole_body_of_a_chart(
     assert chart["origin"] == "generated" and chart["not_executed"] == []
     assert chart["lines"] == chart["executed"] > 200
     declared = bodies["crossing_system-crossing-lights.ads"]
-    assert declared["not_executed"] == [] and declared["branches"] > 50
+    assert declared["not_executed"] == []
+    assert 50 < declared["branches"] < declared["lines"] * 2  # once, not for each inlined call
     assert bodies["ravenchart-timers.adb"]["origin"] == "runtime"
 
     records = file.read_text(encoding="utf-8").split("end_of_record\n")[:-1]

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
+from tests.support import live
 
 TESTS = """
 import os, time, pytest
@@ -57,6 +58,7 @@ def most_at_once(noted: list[tuple[str, str]]) -> int:
 
 
 @pytest.mark.slow
+@pytest.mark.clock
 @pytest.mark.parametrize(
     "chosen",
     [
@@ -80,7 +82,7 @@ def test_what_runs_alone_comes_last_and_runs_beside_nothing(
     done = subprocess.run(
         [*words, "--rootdir", tmp_path, "-c", os.devnull, "-p", "no:cacheprovider", *named],
         cwd=ROOT,
-        env={**os.environ, "NOTED": str(tmp_path / "noted")},
+        env={**os.environ, "NOTED": str(tmp_path / "noted"), live.LOCK: str(tmp_path / "live")},
         capture_output=True,
         text=True,
         check=False,
@@ -93,8 +95,8 @@ def test_what_runs_alone_comes_last_and_runs_beside_nothing(
     alone = [one for one in noted if one[0].startswith("alone")]
     assert noted[len(noted) - len(alone) :] == alone
     assert [what for _, what in alone] == ["begins", "ends"] * (len(alone) // 2)
-    live = [one for one in noted if one[0].startswith("live")]
-    assert [what for _, what in live] == ["begins", "ends"] * (len(live) // 2)
+    lively = [one for one in noted if one[0].startswith("live")]
+    assert [what for _, what in lively] == ["begins", "ends"] * (len(lively) // 2)
     side_by_side = most_at_once([one for one in noted if one[0].startswith("proof")])
     assert side_by_side <= len(os.sched_getaffinity(0))
     if not chosen:
