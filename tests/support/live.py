@@ -15,7 +15,7 @@ from ravenchart.paths import work
 from ravenchart.running.result import RunOutcome
 
 LOCK = "RAVENCHART_LIVE_LOCK"
-"""The environment variable with the file that workers lock, where it is not that of the checkout."""
+"""The environment variable with the file that workers lock; else it is one of the checkout."""
 
 TIMES = 3
 """So often a run is played at the most."""

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.paths import ROOT
+from tests.support import live
 from tests.support.again import MOST, STATUS
 
 TESTS = """
@@ -68,7 +69,12 @@ def test_only_what_depends_on_the_clock_runs_again(
     done = subprocess.run(
         [*words, "--rootdir", tmp_path, "-c", os.devnull, "-p", "no:cacheprovider", module],
         cwd=ROOT,
-        env={**os.environ, "FAILING": failing, "RAVENCHART_TESTS_AGAIN": str(path)},
+        env={
+            **os.environ,
+            "FAILING": failing,
+            "RAVENCHART_TESTS_AGAIN": str(path),
+            live.LOCK: str(tmp_path / "live"),
+        },
         capture_output=True,
         text=True,
         check=False,
