@@ -221,10 +221,9 @@ def row_histograms(analysis: Analysis, seen: Observation) -> list[RowHistogram]:
     for part in parts_of(seen):
         for processor in processors_of(analysis.system, part):
             mine = empty_histograms(analysis, [processor])
-            counts = part.processors.get(processor.name)
+            counts = part.processors.get(processor.name, NO_RELEASES)
             by_name = {one.name: one for one in mine}
-            for slot in processor.slots if counts else ():
-                assert counts is not None
+            for slot in processor.slots:
                 by_name[slot.element].executions = executions_of(processor, slot, counts.releases)
             for sample in samples(processor, part):
                 by_name[sample.row].add(sample)

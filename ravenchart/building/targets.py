@@ -5,13 +5,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 import shutil
 import tomllib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Literal
@@ -25,7 +24,7 @@ from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import work
-from ravenchart.tools import children
+from ravenchart.tools import children, kept
 
 from . import variants
 
@@ -149,17 +148,16 @@ class Board:
     compiler: str
     rts: Path
     clock_rate: int
+    place: str = field(init=False)
+    """The name of folders for its objects: they differ where its run-time library does.
 
-    @property
-    def place(self) -> str:
-        """The name of folders for its objects: they differ where its run-time library does.
+    gprbuild does not link again where only that has changed.
+    """
 
-        gprbuild does not link again where only that has changed.
-        """
-        library = hashlib.sha256()
-        for archive in sorted((self.rts / "adalib").glob("*.a")):
-            library.update(archive.read_bytes())
-        return f"{self.target.name}-{library.hexdigest()[:8]}"
+    def __post_init__(self) -> None:
+        archives = sorted((self.rts / "adalib").glob("*.a"))
+        library = kept.digest([kept.file_digest(archive) for archive in archives])
+        object.__setattr__(self, "place", f"{self.target.name}-{library[:8]}")
 
     def options(self) -> list[str]:
         """The options of gprbuild."""

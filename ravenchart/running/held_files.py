@@ -21,6 +21,9 @@ from pathlib import Path
 ABANDONED = 60.0
 """A file without a lock for so long, in s, is left over."""
 
+TRACE = ".trace"
+"""The trace of a controller has the name of its file of snapshots, and this behind it."""
+
 _LOCK = "hhqqi"
 """`struct flock` of Linux on 64 bits: type, whence, start, length, process."""
 
@@ -59,6 +62,8 @@ def new_file(executable: Path, mark: str) -> Path | None:
     folder, prefix = executable.absolute().parent, f"{executable.name}{mark}"
     for path in folder.glob(f"{prefix}*"):
         with suppress(OSError):
+            if path.is_symlink():
+                continue  # to a trace, which nobody holds: see `link_trace`
             if time.time() - path.stat().st_mtime > ABANDONED and not is_held(path):
                 path.unlink()
     try:
@@ -77,3 +82,17 @@ def held_files(folders: Sequence[Path], program: str, mark: str) -> list[Path]:
             if is_held(path):
                 found.append((path.stat().st_mtime, path))
     return [path for _, path in sorted(found, reverse=True)]
+
+
+def trace_beside(snapshots: Path) -> Path:
+    """The name by which the trace of a controller is found, beside its file of snapshots."""
+    return Path(f"{snapshots}{TRACE}")
+
+
+def link_trace(snapshots: Path, trace: Path) -> None:
+    """Let the trace of a controller be found; links that killed runs have left over are deleted."""
+    for link in snapshots.parent.glob(f"*{TRACE}"):
+        if link.is_symlink() and not link.with_name(link.name.removesuffix(TRACE)).exists():
+            link.unlink(missing_ok=True)
+    with suppress(OSError):
+        trace_beside(snapshots).symlink_to(trace.absolute())

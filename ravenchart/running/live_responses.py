@@ -33,8 +33,7 @@ from ravenchart.analysis.system.timing import Analysis
 from ravenchart.gen.language.terms import NO_TIME, Ns
 from ravenchart.gen.model.system import Processor
 
-TRACE = ".trace"
-"""The trace of a controller has the name of its file of snapshots, and this behind it."""
+from .held_files import trace_beside
 
 MOST_READ = 262_144
 """Bytes of a trace that are read in one look. Where more is there, the end of it is read."""
@@ -49,20 +48,6 @@ NO_TRACE = (
     "Only the last activity of a release has samples, one of each snapshot at most: the trace of "
     "this controller is not at hand."
 )
-
-
-def trace_beside(snapshots: Path) -> Path:
-    """The name by which the trace of a controller is found, beside its file of snapshots."""
-    return Path(f"{snapshots}{TRACE}")
-
-
-def link_trace(snapshots: Path, trace: Path) -> None:
-    """Let the trace of a controller be found; links that killed runs have left over are deleted."""
-    for link in snapshots.parent.glob(f"*{TRACE}"):
-        if link.is_symlink() and not link.with_name(link.name.removesuffix(TRACE)).exists():
-            link.unlink(missing_ok=True)
-    with suppress(OSError):
-        trace_beside(snapshots).symlink_to(trace.absolute())
 
 
 @dataclass(slots=True)
@@ -147,15 +132,19 @@ class LiveResponses:
     def take(self, line: str) -> None:
         """Take a line of the trace; ValueError says what is wrong with it."""
         take_line(line, self._seen)
-        for record in self._seen.records:
+        self.observe(self._seen)
+        for kept in (self._seen.records, self._seen.values, self._seen.reports):
+            kept.clear()
+
+    def observe(self, new: Observation) -> None:
+        """Take the records and reports of lines that have just been read."""
+        for record in new.records:
             owner = self._owners.get(record.element.name)
             if record.kind == "activity" and owner is not None:
                 owner.begins.append(Begin(record.time, record.element.name))
-        for name, counts in self._seen.reports:
+        for name, counts in new.reports:
             self.report(name, counts)
-        for kept in (self._seen.records, self._seen.values, self._seen.reports):
-            kept.clear()
-        if self._seen.complete:
+        if new.complete:
             for one in self._watched.values():
                 one.settle()
 

@@ -19,7 +19,7 @@ from typing import IO
 
 from ravenchart.tools import children
 
-from . import held_files, live_responses, snapshots
+from . import held_files, snapshots
 
 ERROR = "error: "
 """How a controller begins a line about a failure of its own."""
@@ -97,7 +97,7 @@ class ControllerProcess:
         """The file that a monitor finds, where this one has made it."""
         if self.snapshots is not None:
             told[snapshots.VARIABLE] = str(self.snapshots)
-            live_responses.link_trace(self.snapshots, trace)
+            held_files.link_trace(self.snapshots, trace)
         whole = {**os.environ, **told}
         try:
             self._process = children.popen(
@@ -198,7 +198,7 @@ class ControllerProcess:
     def _unlink_snapshots(self) -> None:
         if self.snapshots is not None:
             self.snapshots.unlink(missing_ok=True)
-            live_responses.trace_beside(self.snapshots).unlink(missing_ok=True)
+            held_files.trace_beside(self.snapshots).unlink(missing_ok=True)
 
     def _early_end(self) -> str:
         """The reason why the output ended before the port was known."""

@@ -169,6 +169,7 @@ class _Counted:
     """The counts of a board since its start, or since it was first read."""
 
     map: TraceMap
+    responses: LiveResponses
     partial: bool
     """Whether it ran already then."""
     seen: Observation = field(init=False)
@@ -187,6 +188,8 @@ class _Counted:
             self.said.append(line)
             return
         take_line(line, self.seen)
+        self.responses.observe(self.seen)
+        self.seen.reports.clear()
         for records in (self.seen.records, self.seen.values):
             if records:
                 record = records.pop()
@@ -257,7 +260,7 @@ class WatchedBoard(WatchedController):
         if lines:
             self.made = self.came = time.monotonic()
             self.sequence += self._counted is not None  # what is of no run is not shown
-        counted = self._counted or _Counted(self.map, partial=False)
+        counted = self._counted or _Counted(self.map, self._responses, partial=False)
         self.show(counted.snapshot(self.sequence), process)
         self.node.said = list(counted.said)
         self._say_what_is_missing()
@@ -276,14 +279,12 @@ class WatchedBoard(WatchedController):
         starts = BEGIN.fullmatch(line) is not None
         if starts or (self._counted is None and NAMED.fullmatch(line)):
             self.begin(Ns(time.monotonic_ns()), listed=0)
-            self._counted = _Counted(self.map, partial=not starts)
             self._responses = self._no_responses(whole=starts)
+            self._counted = _Counted(self.map, self._responses, partial=not starts)
         if self._counted is None or not line:
             return
         try:
             self._counted.take(line)
-            if not line.startswith(SAID):
-                self._responses.take(line)
         except ValueError:
             self._lose(1)
             return

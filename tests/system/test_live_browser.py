@@ -17,7 +17,7 @@ from ravenchart.analysis.system.observed import read_map
 from ravenchart.building import checking, generation, programs
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
-from ravenchart.running.live_responses import trace_beside
+from ravenchart.running.held_files import trace_beside
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,16 +14,16 @@ import pytest
 from ravenchart.analysis.system.observed import Releases, read_trace
 from ravenchart.analysis.system.row_responses import RowHistogram, row_histograms
 from ravenchart.gen.language.terms import Ns
+from ravenchart.running.held_files import link_trace, new_file, trace_beside
 from ravenchart.running.live_responses import (
     MOST_READ,
     NO_TRACE,
     LiveResponses,
     ProcessResponses,
     TraceTail,
-    link_trace,
-    trace_beside,
 )
 from ravenchart.running.row_histories import histories
+from ravenchart.running.snapshots import MARK
 from tests.support.responses import MS, desk, desk_map, lines, random_run
 
 START = Ns(1000)
@@ -191,3 +192,16 @@ def test_the_last_instant_of_a_replay_shows_the_whole_run() -> None:
     seen = read_trace(told, desk_map())
     rows = [one.at(seen.end) for one in histories(desk(), seen)]
     assert rows == row_histograms(desk(), seen)
+
+
+def test_a_run_that_starts_leaves_the_link_to_a_trace_that_was_not_written_for_long(
+    tmp_path: Path,
+) -> None:
+    trace = tmp_path / "trace.txt"
+    trace.write_text("E 7\n")
+    os.utime(trace, (0, 0))
+    mine = new_file(tmp_path / "main", MARK)
+    assert mine is not None
+    link_trace(mine, trace)
+    assert new_file(tmp_path / "main", MARK) is not None
+    assert trace_beside(mine).is_symlink()

@@ -28,7 +28,8 @@ from ravenchart.commands.monitor import Cropped
 from ravenchart.gen.language.terms import Ns
 from ravenchart.paths import ROOT
 from ravenchart.running import monitor_text
-from ravenchart.running.live_responses import NO_TRACE, trace_beside
+from ravenchart.running.held_files import trace_beside
+from ravenchart.running.live_responses import NO_TRACE
 from ravenchart.running.monitored import NodeMonitor, Overlooked, WatchedNode
 from ravenchart.running.response_text import ResponseTable, response_lines
 from ravenchart.running.snapshots import parsed_snapshot

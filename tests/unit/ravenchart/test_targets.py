@@ -193,10 +193,15 @@ def test_objects_for_another_run_time_library_have_another_place(tmp_path: Path)
     library = tmp_path / "adalib" / "libgnarl.a"
     library.parent.mkdir()
     library.write_bytes(b"!<arch>\n")
-    board = targets.Board(targets.target("zynqmp"), "aarch64-elf", tmp_path, 10**8)
+
+    def found() -> targets.Board:
+        return targets.Board(targets.target("zynqmp"), "aarch64-elf", tmp_path, 10**8)
+
+    board = found()
     before, objects = board.place, board.scenario()["RAVENCHART_OBJECTS"]
-    assert board.place == before
+    assert found().place == before
     library.write_bytes(b"!<arch>\nchanged")
+    board = found()
     assert board.place != before
     assert board.place.startswith("zynqmp-")
     assert board.scenario()["RAVENCHART_OBJECTS"] != objects
