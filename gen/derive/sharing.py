@@ -12,7 +12,7 @@ from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
-from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.statechart import Region
@@ -28,6 +28,7 @@ from .calls import (
     replies_read,
     rows_of,
 )
+from .crossing import MAIN_CORE, core_of, crossings, other_cores, reporter, senders_to
 from .senders import sending_rows
 
 MAIN = "main"
@@ -40,13 +41,18 @@ class _Sharing:
 
     system: System
     priorities: dict[str, int]
+    cores: dict[str, int]
+    """Of each task that has one of its own."""
+    crossing: frozenset[str]
+    """The ports whose values come from another core, by ``instance.port``."""
 
     def made(self, element: str, users: Iterable[str]) -> SharedObject:
         """The object with these users, each once, and the ceiling that they need."""
         once = tuple(dict.fromkeys(users))
         node = self.system.nodes[0]
-        ceiling = max((self.priorities[user] for user in once), default=0)
-        return SharedObject(element, node.name, once, ceiling, node.critical_section)
+        ceiling = max((self.priorities.get(user, 0) for user in once), default=0)
+        core = next((self.cores[user] for user in once if user in self.cores), MAIN_CORE)
+        return SharedObject(element, node.name, once, ceiling, node.critical_section, core=core)
 
     def made_on_each(self, element: str, users: Iterable[str]) -> SharedObject:
         """An object as `made`, of which other nodes may have one of the same name."""
@@ -63,9 +69,9 @@ class _Sharing:
         for port in component.inputs():
             handler = self.runs(instance.name, "ports")
             element = f"{instance.name}.{port.name}"
-            yield self.made(
-                f"{element}.mailbox", [*self.writers(instance.name, port.name), handler]
-            )
+            if element not in self.crossing:
+                end = End(instance.name, port.name)
+                yield self.made(f"{element}.mailbox", [*senders_to(self.system, end), handler])
             readers = [self.runs(instance.name, r.name) for r in runnables if port.name in r.reads]
             if readers:
                 yield self.made(element, [handler, *readers])
@@ -90,7 +96,9 @@ class _Sharing:
                 raisers = [
                     user for one in component.regions for user in self.raisers(instance, one)
                 ]
-                yield self.made(f"{instance.name}.{region.name}.queue", [own, *raisers])
+                looked = self.reporters(instance)
+                users = [own, *raisers, *looked]
+                yield self.made(f"{instance.name}.{region.name}.queue", users)
             for activity, _ in component.completing(region.name):
                 users = [own, self.runs(instance.name, activity.name)]
                 yield self.made(f"{instance.name}.{activity.name}.visit", users)
@@ -148,17 +156,14 @@ class _Sharing:
                 longest = max(*(one.wcet for one in device.provides), life.make_safe or Ns(0))
                 yield replace(made, section=max(made.section, longest))
 
-    def writers(self, instance: str, port: str) -> Iterable[str]:
-        """The processors that put values into an input port's mailbox."""
-        for connection in self.system.connections:
-            if (connection.target.instance, connection.target.name) == (instance, port):
-                source = self.system.instance(connection.source.instance)
-                for sender in source.component.runnables():
-                    if connection.source.name in sender.sends:
-                        yield self.runs(source.name, sender.name)
-        for message in self.system.messages:
-            if any((end.instance, end.name) == (instance, port) for end in message.targets):
-                yield from (p.name for p in self.system.processors if p.released_by == message.bus)
+    def reporters(self, instance: Instance) -> Iterable[str]:
+        """The task that looks at the queues of an instance on another core than the main program.
+
+        That the main program looks at the others is not counted: it does so at its end.
+        """
+        core = core_of(self.system, instance.name)
+        if core != MAIN_CORE:
+            yield reporter(self.system.nodes[0], core)
 
     def raisers(self, instance: Instance, region: Region) -> Iterable[str]:
         """The tasks that may put an event into a region's queue."""
@@ -255,11 +260,22 @@ def _works_in(item: Region | Activity, region: str) -> bool:
     )
 
 
+def on_core(name: str, core: int) -> str:
+    """The name of what each core has: ``name``, and on another core than the first ``name_2``."""
+    return name if core == MAIN_CORE else f"{name}_{core}"
+
+
 def objects_on_node(system: System) -> tuple[SharedObject, ...]:
     """The protected objects of one node. The users of `health` and `trace` are all processors."""
     tasks = system.tasks
-    sharing = _Sharing(system, {task.element: task.priority for task in tasks} | {MAIN: 0})
+    sharing = _Sharing(
+        system,
+        {task.element: task.priority for task in tasks} | {MAIN: 0},
+        {task.element: task.core for task in tasks},
+        frozenset(one.element for one in crossings(system)),
+    )
     objects: list[SharedObject] = []
+    away = other_cores(system)
     for instance in system.instances:
         objects.extend(sharing.of_instance(instance))
     objects.extend(sharing.devices())
@@ -289,18 +305,20 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
     for processor in system.processors:
         watched_by = sharing.supervisor(processor)
         users = [processor.name, *([] if watched_by is None else [watched_by])]
+        if processor.core in away:
+            users.append(reporter(system.node(processor.node), processor.core))
         objects.append(sharing.made(f"{processor.name}.monitor", users))
     supervisors = {f"{node.name}.{SUPERVISOR}" for node in system.nodes}
     kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
     kept += [OBJECT] if system.recorded_values else []
-    for core in sorted({1, *(processor.core for processor in system.processors)}):
+    for core in (MAIN_CORE, *away):
         here = [processor.name for processor in system.processors if processor.core == core]
-        if core == 1:
-            here += [t.element for t in tasks if t.element in supervisors]
+        if core == MAIN_CORE:
+            here += [*(t.element for t in tasks if t.element in supervisors), MAIN]
+        else:
+            here.append(reporter(system.nodes[0], core))
         for name in kept:
-            #  The main program runs on the first core, and looks at the others' at the end.
-            own, users = (name, [*here, MAIN]) if core == 1 else (f"{name}_{core}", here)
-            objects.append(sharing.made_on_each(own, users))
+            objects.append(sharing.made_on_each(on_core(name, core), here))
     for node in system.nodes:
         for name, kind in ((SUPERVISOR, node.supervision), (PROBE, node.probe)):
             element = f"{node.name}.{name}"

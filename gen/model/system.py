@@ -177,6 +177,8 @@ class SharedObject:
     """Longest time inside it."""
     on_each_node: bool = False
     """Whether other nodes may have an object of the same name."""
+    core: int = 1
+    """The core of its users."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,28 +1,68 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules for nodes with several cores: each core has its own objects."""
+"""Rules for nodes with several cores: each has its own objects, and values cross in few ways."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.completion import driver_core, programs
+from ravenchart.gen.derive.crossing import MAIN_CORE, Crossing, crossings, other_cores
 from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.model.component import PortKind
+from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System
+
+SHARED = "RV-0711"
 
 
 def shared_across_cores(system: System) -> Iterator[Diagnostic]:
-    """Nothing is shared between cores: ceilings protect an object on one core only.
+    """Between cores there are the values of ports alone: a ceiling protects on one core only.
 
     ``system`` is completed.
     """
     if all(node.cores == 1 for node in system.nodes):
         return
+    for part in programs(system):
+        if other_cores(part):
+            divided = list(_divided_instances(part))
+            yield from divided or (*_objects(part), *_drivers(part), *_crossing_values(part))
+
+
+def _divided_instances(system: System) -> Iterator[Diagnostic]:
+    """All rows of an instance run on one core."""
+    for instance in system.instances:
+        for diagnostic in _divided(system, instance):
+            yield diagnostic
+            break
+
+
+def _divided(system: System, instance: Instance) -> Iterator[Diagnostic]:
+    first, *others = system.slots_of(instance.name)
+    home = system.processor_of(first.element)
+    for slot in others:
+        processor = system.processor_of(slot.element)
+        if processor.core != home.core:
+            text = (
+                f"{instance.name} runs on two cores: {slot.name} on core {processor.core}, "
+                f"{first.name} on core {home.core}"
+            )
+            hint = "put all rows of an instance on one core"
+            yield error(SHARED, processor.origin, text, hint=hint)
+
+
+def _objects(system: System) -> Iterator[Diagnostic]:
+    """The users of a protected object are on one core."""
     tasks = {task.element: task for task in system.tasks}
     for item in system.objects:
-        homes = {user: tasks[user].core if user in tasks else 1 for user in item.users}
-        first, *others = item.users
+        homes = {user: tasks[user].core for user in item.users if user in tasks}
+        homes |= {MAIN: MAIN_CORE} if MAIN in item.users else {}
+        if not homes:
+            continue
+        first, *others = homes
         for other in others:
             if homes[other] != homes[first]:
                 one, two = (
@@ -31,6 +71,45 @@ def shared_across_cores(system: System) -> Iterator[Diagnostic]:
                 )
                 origin = (tasks.get(other) or tasks[first]).origin
                 message = f"{item.element} is shared by {one} and {two}"
-                hint = "put them on one core: cores exchange nothing"
-                yield error("RV-0711", origin, message, hint=hint)
+                hint = "put them on one core: only values of ports go from core to core"
+                yield error(SHARED, origin, message, hint=hint)
                 break
+
+
+def _drivers(system: System) -> Iterator[Diagnostic]:
+    """The drivers run where the main program does, which reads their counters."""
+    for bus in system.buses:
+        core = driver_core(system, bus, system.nodes[0].name)
+        if core != MAIN_CORE:
+            text = f"{bus.name} is served on core {core}, but its driver runs on core {MAIN_CORE}"
+            hint = f"put what sends or receives on {bus.name} on core {MAIN_CORE}"
+            yield error(SHARED, bus.origin, text, hint=hint)
+
+
+def _crossing_values(system: System) -> Iterator[Diagnostic]:
+    """One processor sends, and no value that was sent is taken back."""
+    polled = {(poll.instance, poll.port) for poll in system.polls}
+    for crossing in crossings(system):
+        origin = system.processor_of(f"{crossing.target.instance}.ports").origin
+        where = f"{crossing.element}, on core {crossing.taken_on},"
+        for text, hint in _refused(system, crossing, polled):
+            yield error(SHARED, origin, f"{where} {text}", hint=hint)
+
+
+def _refused(
+    system: System, crossing: Crossing, polled: set[tuple[str, str]]
+) -> Iterator[tuple[str, str]]:
+    """Why values of a crossing cannot go from core to core, each with a hint."""
+    together = f"put sender and receiver on core {crossing.sent_on}"
+    if len(crossing.senders) > 1:
+        names = ", ".join(crossing.senders[:-1]) + f" and {crossing.senders[-1]}"
+        yield f"gets values from {names}", "let one processor send to it, or " + together
+    elif (crossing.target.instance, crossing.target.name) in polled:
+        yield f"gets values from {crossing.senders[0]} and from a device", together
+    if system.woken_by(crossing.target) is not None:
+        text = f"releases a processor, but {crossing.senders[0]} sends on core {crossing.sent_on}"
+        yield text, "release the processor by time, or " + together
+    port = crossing.port
+    if port.kind is PortKind.QUEUED and port.overflow is Overflow.DROP_OLDEST:
+        text = f"drops its oldest value, but {crossing.senders[0]} sends on core {crossing.sent_on}"
+        yield text, "give it `overflow: reject_newest`, or " + together

@@ -14,10 +14,6 @@ from ravenchart.gen.model.system import UNREADY, System
 
 def unready(system: System) -> Iterator[Diagnostic]:
     """An error for each element that has no code yet."""
-    for node in system.nodes:
-        if node.cores > 1:
-            text = f"{node.name} has {node.cores} cores: several are analysed, not generated yet"
-            yield error(UNREADY, node.origin, text, hint="put all processors on one core")
     for bus in (bus for part in programs(system) for bus in part.buses):
         if not any(message.bus == bus.name for message in system.messages):
             text = f"the model sends and receives nothing on {bus.name}"

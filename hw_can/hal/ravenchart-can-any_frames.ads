@@ -6,7 +6,8 @@
 --  Guarantees   those of Can and of Fd_Frames; a property that the family does
 --               not have reads as 0
 --  Tasking      none: frames are values
---  Timing       constant; Words is linear in the room for data
+--  Timing       constant; Bytes and Words are linear in the room for
+--               data
 
 with Interfaces;
 with Ravenchart.Can.Fd_Frames;
@@ -15,6 +16,7 @@ package Ravenchart.Can.Any_Frames
   with SPARK_Mode, Pure
 is
    use type Fd_Frames.Fd_Words;
+   use type Interfaces.Unsigned_8;
 
    type Frame_Family is (Classic, Flexible);
    --  CAN 2.0 or CAN FD (the bit FDF of ISO 11898-1).
@@ -73,6 +75,13 @@ is
        else 0)
    with Global => null;
    --  One byte of the data; 0 beyond the length.
+
+   function Bytes (F : Any_Frame) return Fd_Frames.Fd_Bytes
+   with
+     Global => null,
+     Post   =>
+       (for all I in Fd_Frames.Fd_Index => Bytes'Result (I) = Byte (F, I));
+   --  The data as bytes; 0 beyond the length.
 
    function Payload (F : Any_Frame) return Interfaces.Unsigned_64
    is (if F.Family = Classic then Payload (F.Plain) else 0)

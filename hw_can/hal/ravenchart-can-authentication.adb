@@ -98,12 +98,7 @@ is
               = (if J in First - 1 - K .. First - 1
                  then Octet (Value, First - 1 - J)
                  else Old.Fd.Bytes (J)));
-         pragma Loop_Invariant
-           (F.Family = Old.Family
-            and then F.Fd.Length = Old.Fd.Length
-            and then F.Fd.Id = Old.Fd.Id
-            and then F.Fd.Format = Old.Fd.Format
-            and then F.Fd.Rate = Old.Fd.Rate);
+         pragma Loop_Invariant (Has_Same_Header (F, Old));
       end loop;
       for I in 0 .. S.Mac_Bytes - 1 loop
          F.Fd.Bytes (First + I) := Answer.Tag (I);
@@ -115,12 +110,7 @@ is
                  elsif J in First - S.Freshness_Bytes .. First - 1
                  then Octet (Value, First - 1 - J)
                  else Old.Fd.Bytes (J)));
-         pragma Loop_Invariant
-           (F.Family = Old.Family
-            and then F.Fd.Length = Old.Fd.Length
-            and then F.Fd.Id = Old.Fd.Id
-            and then F.Fd.Format = Old.Fd.Format
-            and then F.Fd.Rate = Old.Fd.Rate);
+         pragma Loop_Invariant (Has_Same_Header (F, Old));
       end loop;
       pragma Assert
         (for all K in Octet_Index =>

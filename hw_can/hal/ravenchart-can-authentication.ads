@@ -179,14 +179,19 @@ is
    with Global => null;
    --  Does F end with this freshness value and with this MAC?
 
-   function Has_Same_Data
-     (F, G : Any_Frames.Any_Frame; S : Setting) return Boolean
+   function Has_Same_Header (F, G : Any_Frames.Any_Frame) return Boolean
    is (F.Family = Any_Frames.Flexible
        and then G.Family = Any_Frames.Flexible
        and then F.Fd.Length = G.Fd.Length
        and then F.Fd.Id = G.Fd.Id
        and then F.Fd.Format = G.Fd.Format
-       and then F.Fd.Rate = G.Fd.Rate
+       and then F.Fd.Rate = G.Fd.Rate)
+   with Ghost, Global => null;
+   --  CAN FD frames with the same length, identifier, format and bit rates.
+
+   function Has_Same_Data
+     (F, G : Any_Frames.Any_Frame; S : Setting) return Boolean
+   is (Has_Same_Header (F, G)
        and then
          (for all I in 0 .. Data_Length (S) - 1 =>
             Any_Frames.Byte (F, I) = Any_Frames.Byte (G, I)))

@@ -9,7 +9,7 @@ is
    -----------------
 
    function After_Bytes
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       Data  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;
@@ -27,7 +27,7 @@ is
    ---------
 
    function Run
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       Data  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;
@@ -49,7 +49,7 @@ is
    -------------------------
 
    procedure Lemma_Same_Register
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       A, B  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;

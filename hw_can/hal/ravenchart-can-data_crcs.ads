@@ -21,13 +21,13 @@ is
    use type Interfaces.Unsigned_8;
    use type Interfaces.Unsigned_16;
 
-   type Crc_Kind is (Crc_8_J1850, Crc_8_H2f, Crc_16_Ccitt);
+   type Data_Crc_Kind is (Crc_8_J1850, Crc_8_H2f, Crc_16_Ccitt);
 
    subtype Register is Interfaces.Unsigned_16;
    --  The remainder, in the highest bits: a CRC of 8 bits has 0 in the low
    --  byte, so that one step serves all kinds.
 
-   function Polynomial (Kind : Crc_Kind) return Register
+   function Polynomial (Kind : Data_Crc_Kind) return Register
    is (case Kind is
          when Crc_8_J1850  => 16#1D00#,
          when Crc_8_H2f    => 16#2F00#,
@@ -35,20 +35,20 @@ is
    with Global => null;
    --  The generator, without its highest term.
 
-   function After_Bit (Kind : Crc_Kind; R : Register) return Register
+   function After_Bit (Kind : Data_Crc_Kind; R : Register) return Register
    is (Interfaces.Shift_Left (R, 1)
        xor (if (R and 16#8000#) /= 0 then Polynomial (Kind) else 0))
    with Global => null;
    --  The register after one more bit.
 
-   function After_Four (Kind : Crc_Kind; R : Register) return Register
+   function After_Four (Kind : Data_Crc_Kind; R : Register) return Register
    is (After_Bit
          (Kind,
           After_Bit (Kind, After_Bit (Kind, After_Bit (Kind, R)))))
    with Global => null;
 
    function After_Byte
-     (Kind : Crc_Kind; R : Register; Byte : Interfaces.Unsigned_8)
+     (Kind : Data_Crc_Kind; R : Register; Byte : Interfaces.Unsigned_8)
       return Register
    is (After_Four
          (Kind,
@@ -59,7 +59,7 @@ is
    --  The register after one more byte, its highest bit first.
 
    function After_Bytes
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       Data  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;
@@ -73,7 +73,7 @@ is
    --  none, else one more byte after those before it.
 
    function Run
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       Data  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;
@@ -85,7 +85,7 @@ is
    --  The register after the bytes First to Past - 1.
 
    procedure Lemma_Same_Register
-     (Kind  : Crc_Kind;
+     (Kind  : Data_Crc_Kind;
       R     : Register;
       A, B  : Fd_Frames.Fd_Bytes;
       First : Fd_Frames.Fd_Index;

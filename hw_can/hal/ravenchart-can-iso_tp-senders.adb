@@ -127,7 +127,7 @@ is
       Begins : constant Byte_Index := First_Data (State, S);
       From   : constant Byte_Count := First_Sent (State);
       Bytes  : constant Byte_Count := Carried (State, S);
-      Result : Octets := (others => Padding);
+      Result : Frame_Octets := (others => Padding);
    begin
       if State.Phase = Sending then
          Result (0) := 16#20# + Octet (State.Sequence);

@@ -63,9 +63,9 @@ is
    with Global => null;
    --  One byte of the data of a frame.
 
-   type Octets is array (Byte_Index) of Octet;
+   type Frame_Octets is array (Byte_Index) of Octet;
 
-   function Payload_Of (Item : Octets) return Interfaces.Unsigned_64
+   function Payload_Of (Item : Frame_Octets) return Interfaces.Unsigned_64
    is (Interfaces.Unsigned_64 (Item (0))
        or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Item (1)), 8)
        or Interfaces.Shift_Left (Interfaces.Unsigned_64 (Item (2)), 16)

@@ -6,7 +6,7 @@ with Ravenchart.Can.Data_Crcs;
 package body Ravenchart.Can.Protection
   with SPARK_Mode
 is
-   use type Data_Crcs.Crc_Kind;
+   use type Data_Crcs.Data_Crc_Kind;
 
    function First_Data (P : Profile) return Fd_Frames.Fd_Index
    is (if P = Profile_5 then 2 else 1);
@@ -22,7 +22,7 @@ is
    with Post => (if S.Kind /= Profile_5 then Final'Result <= 16#FF#);
    --  The CRC, from the register behind the data.
 
-   function Kind_Of (P : Profile) return Data_Crcs.Crc_Kind
+   function Kind_Of (P : Profile) return Data_Crcs.Data_Crc_Kind
    is (case P is
          when Profile_1 | Profile_11 => Data_Crcs.Crc_8_J1850,
          when Profile_2              => Data_Crcs.Crc_8_H2f,
@@ -91,28 +91,13 @@ is
    --  F with this CRC.
 
    ----------
-   -- Data --
-   ----------
-
-   function Data (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes is
-      Result : Fd_Frames.Fd_Bytes := (others => 0);
-   begin
-      for I in Result'Range loop
-         Result (I) := Any_Frames.Byte (F, I);
-         pragma Loop_Invariant
-           (for all J in 0 .. I => Result (J) = Any_Frames.Byte (F, J));
-      end loop;
-      return Result;
-   end Data;
-
-   ----------
    -- Seed --
    ----------
 
    function Seed
      (S : Setting; Count : Counter_Value) return Data_Crcs.Register
    is
-      Kind  : constant Data_Crcs.Crc_Kind := Kind_Of (S.Kind);
+      Kind  : constant Data_Crcs.Data_Crc_Kind := Kind_Of (S.Kind);
       Start : constant Data_Crcs.Register :=
         (case S.Kind is
            when Profile_1 | Profile_11 => 0,
@@ -145,7 +130,7 @@ is
      (S : Setting; R : Data_Crcs.Register; Count : Counter_Value)
       return Interfaces.Unsigned_16
    is
-      Kind : constant Data_Crcs.Crc_Kind := Kind_Of (S.Kind);
+      Kind : constant Data_Crcs.Data_Crc_Kind := Kind_Of (S.Kind);
    begin
       case S.Kind is
          when Profile_1 | Profile_11 =>
@@ -255,24 +240,24 @@ is
    is
       Counted : constant Any_Frames.Any_Frame := With_Counter (F, S, Count);
       Check   : constant Interfaces.Unsigned_16 :=
-        Crc (S, Data (Counted), Count);
+        Crc (S, Any_Frames.Bytes (Counted), Count);
       Result  : constant Any_Frames.Any_Frame := With_Crc (Counted, S, Check);
    begin
       Data_Crcs.Lemma_Same_Register
         (Kind_Of (S.Kind),
          Seed (S, Count),
-         Data (Counted),
-         Data (Result),
+         Any_Frames.Bytes (Counted),
+         Any_Frames.Bytes (Result),
          First_Data (S.Kind),
          S.Length);
       pragma Assert
         (Data_Crcs.Run
-           (Kind_Of (S.Kind), Seed (S, Count), Data (Counted),
+           (Kind_Of (S.Kind), Seed (S, Count), Any_Frames.Bytes (Counted),
             First_Data (S.Kind), S.Length)
          = Data_Crcs.Run
-             (Kind_Of (S.Kind), Seed (S, Count), Data (Result),
+             (Kind_Of (S.Kind), Seed (S, Count), Any_Frames.Bytes (Result),
               First_Data (S.Kind), S.Length));
-      pragma Assert (Crc (S, Data (Result), Count) = Check);
+      pragma Assert (Crc (S, Any_Frames.Bytes (Result), Count) = Check);
       pragma Assert (Counter (Result, S.Kind) = Count);
       return Result;
    end Protected_Frame;

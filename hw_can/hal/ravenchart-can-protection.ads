@@ -119,14 +119,6 @@ is
    with Global => null;
    --  Is that part the one of this message?
 
-   function Data (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes
-   with
-     Global => null,
-     Post   =>
-       (for all I in Fd_Frames.Fd_Index =>
-          Data'Result (I) = Any_Frames.Byte (F, I));
-   --  The data as bytes; 0 beyond the length.
-
    function Crc
      (S : Setting; Item : Fd_Frames.Fd_Bytes; Count : Counter_Value)
       return Interfaces.Unsigned_16
@@ -145,7 +137,8 @@ is
        and then Counter (F, S.Kind) <= Last_Counter (S.Kind)
        and then Shows_Nibble (F, S)
        and then
-         Crc_Field (F, S.Kind) = Crc (S, Data (F), Counter (F, S.Kind)))
+         Crc_Field (F, S.Kind)
+         = Crc (S, Any_Frames.Bytes (F), Counter (F, S.Kind)))
    with Global => null;
    --  Is it a frame of this message with a right CRC?
 

@@ -19,11 +19,11 @@ is
    use type Fd_Frames.Bit_Rate_Use;
    use type Wire.Phases;
 
-   type Frame_Family is (Classic, Flexible, Asked_Error);
+   type Bus_Frame_Family is (Classic, Flexible, Asked_Error);
    --  CAN 2.0, CAN FD, or a request to the bus for an error frame. Such a
    --  request has the class and the details of the error frame as a frame.
 
-   type Bus_Frame (Family : Frame_Family := Classic) is record
+   type Bus_Frame (Family : Bus_Frame_Family := Classic) is record
       case Family is
          when Classic | Asked_Error =>
             Plain : Frame;

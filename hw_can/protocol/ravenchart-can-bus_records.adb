@@ -6,7 +6,7 @@ with Ravenchart.Can.Fd_Frames;
 package body Ravenchart.Can.Bus_Records
   with SPARK_Mode
 is
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
    use type Fd_Frames.Bit_Rate_Use;
    use type Fd_Frames.Sender_State;
 

@@ -25,7 +25,7 @@ package Ravenchart.Can.Bus_Clients
   with SPARK_Mode, Pure
 is
    use Bus_Nodes;
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
    use type Bus_Records.Request_Kind;
    use type Error_Frames.Error_Kind;
    use type Interfaces.Unsigned_32;

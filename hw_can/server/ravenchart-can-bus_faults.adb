@@ -4,7 +4,7 @@
 package body Ravenchart.Can.Bus_Faults
   with SPARK_Mode
 is
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
 
    --------------
    -- As_Heard --

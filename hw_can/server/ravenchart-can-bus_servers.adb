@@ -11,7 +11,7 @@ with Ravenchart.Can.Transmit_Buffers;
 package body Ravenchart.Can.Bus_Servers
   with SPARK_Mode
 is
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
    use type Buses.Ending;
    use type Interfaces.Unsigned_32;
 

@@ -10,7 +10,7 @@ is
    use type Arbitration.Contender;
    use type Arbitration.Contender_Index;
    use type Bus_Faults.Fault_Kind;
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
    use type Levels.Level;
 
    End_Bits : constant := 7;

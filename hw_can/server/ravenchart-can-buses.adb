@@ -8,7 +8,7 @@ package body Ravenchart.Can.Buses
   with SPARK_Mode
 is
    use Frame_Outcomes;
-   use type Bus_Frames.Frame_Family;
+   use type Bus_Frames.Bus_Frame_Family;
    use type Error_Frames.Error_Flag;
    use type Error_Frames.Error_Frame;
 

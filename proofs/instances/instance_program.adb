@@ -6,6 +6,8 @@
 
 with System;
 with Ada.Real_Time;
+with Four_Slot_Steps;
+pragma Unreferenced (Four_Slot_Steps);
 with Instance_Authentication;
 pragma Unreferenced (Instance_Authentication);
 with Instance_Bus;
@@ -27,6 +29,8 @@ with Ravenchart.Health;
 with Ravenchart.Hosts;
 with Ravenchart.Queueing;
 with Ravenchart.Traces;
+with Ring_Steps;
+pragma Unreferenced (Ring_Steps);
 
 procedure Instance_Program
   with SPARK_Mode, Priority => System.Priority'First

@@ -7,6 +7,9 @@
 with System;
 with Ravenchart.Answered_Offers;
 with Ravenchart.Blackboards;
+with Ravenchart.Crossing_Boards;
+with Ravenchart.Crossing_Queues;
+with Ravenchart.Crossing_Samples;
 with Ravenchart.Deferrals;
 with Ravenchart.Event_Lists;
 with Ravenchart.Fault_Reports;
@@ -64,6 +67,19 @@ is
      (Element_Type => Reading,
       Initial      => No_Reading,
       Ceiling      => Ceiling);
+
+   package Crossing_Board is new Ravenchart.Crossing_Boards
+     (Element_Type => Reading,
+      Initial      => No_Reading);
+
+   package Crossing_Sample is new Ravenchart.Crossing_Samples
+     (Element_Type => Reading,
+      Null_Element => No_Reading);
+
+   package Crossing_Queue is new Ravenchart.Crossing_Queues
+     (Element_Type => Reading,
+      Null_Element => No_Reading,
+      Capacity     => 4);
 
    package Ports is new Ravenchart.Port_Regions
      (Value_Type => Reading,

@@ -33,18 +33,9 @@ is
    procedure Take
      (Item   : out Recorded_Values.Value_Record;
       Status : out Queueing.Take_Status)
-   with Refined_Global => (In_Out => Records.State)
-   is
-   begin
-      Records.Take (Item, Status);
-   end Take;
+   renames Records.Take;
 
    function Lost return Event_Count
-   with Refined_Global => Records.State
-   is
-      Count : constant Event_Count := Records.Lost;
-   begin
-      return Count;
-   end Lost;
+   renames Records.Lost;
 
 end Ravenchart.Value_Buffers;

@@ -23,7 +23,7 @@ procedure Test_Data_Crcs is
    Ones          : constant Fd_Frames.Fd_Bytes := (others => 16#FF#);
 
    function Eight
-     (Kind : Crc_Kind; Item : Fd_Frames.Fd_Bytes; Past : Natural)
+     (Kind : Data_Crc_Kind; Item : Fd_Frames.Fd_Bytes; Past : Natural)
       return Register
    is (Shift_Right (Run (Kind, 16#FF00#, Item, 0, Past), 8) xor 16#FF#);
 

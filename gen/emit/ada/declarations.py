@@ -297,6 +297,23 @@ class Protected:
 
 
 @built
+class SingleTask:
+    """A single task: its spec with aspects, or its body."""
+
+    name: str
+    aspects: tuple[Aspect, ...]
+    body: tuple[Stmt, ...] | None
+
+    def __init__(
+        self,
+        name: Named,
+        aspects: tuple[Aspect, ...] = (),
+        body: tuple[Stmt, ...] | None = None,
+    ) -> None:
+        self.name, self.aspects, self.body = defining(name), aspects, body
+
+
+@built
 class UseType:
     """``use type name;``"""
 
@@ -323,6 +340,7 @@ Decl = (
     | GenericInstance
     | Package
     | Protected
+    | SingleTask
     | UseType
     | UsePackage
     | Pragma

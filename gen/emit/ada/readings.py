@@ -21,6 +21,7 @@ from .declarations import (
     Package,
     RecordComponent,
     RecordDeclaration,
+    SingleTask,
     Subprogram,
     SubtypeDeclaration,
     TypeDeclaration,
@@ -76,6 +77,9 @@ def _names(item: Decl) -> Iterator[_Name]:
         case Package(name, is_body=is_body):
             if not is_body:  # that of a package that was declared before
                 yield _Name(name.last)
+        case SingleTask(name, body=body):
+            if body is None:
+                yield _Name(name)
         case Subprogram(name, params, result):
             types = (*(p.type for p in params), result)
             yield _Name(name, types, completes=item.body is not None)

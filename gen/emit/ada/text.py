@@ -30,6 +30,7 @@ from .declarations import (
     Protected,
     RangeDefinition,
     RecordDeclaration,
+    SingleTask,
     Subprogram,
     Subtype,
     SubtypeDeclaration,
@@ -244,6 +245,13 @@ def _subprogram(sub: Subprogram) -> Doc:
     )
 
 
+def _task(task: SingleTask) -> Doc:
+    if task.body is None:
+        return upright(f"task {task.name}", _aspects(task.aspects), ";")
+    begin = SOFT, "begin", _block(task.body), SOFT
+    return upright(f"task body {task.name} is", *begin, f"end {task.name};")
+
+
 def _profile(parts: Sequence[Doc]) -> Doc:
     """Parameters and result: behind the name, or below it."""
     first, *rest = parts or ("",)
@@ -291,6 +299,8 @@ def _declaration(decl: Decl) -> Doc:
             return _package(decl)
         case Protected():
             return _protected(decl)
+        case SingleTask():
+            return _task(decl)
         case UseType(name) | UsePackage(name):
             return f"use {'type ' if isinstance(decl, UseType) else ''}{name.text};"
         case Pragma(name, args):

@@ -44,6 +44,7 @@ from ravenchart.gen.emit.ada.statements import Comment, IfStatement, Pragma, Ret
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE, driver_element, fact
 from ravenchart.gen.emit.commands.remote_calls import received_as
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, EXECUTED, bus_row, executed, run_spec
+from ravenchart.gen.emit.tables.port_calls import put_of
 from ravenchart.gen.emit.tables.trace_calls import fault, fault_units, note, traced
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.instances import End
@@ -103,9 +104,11 @@ def _received(system: System, bus: Bus) -> tuple[Message, ...]:
     return tuple(m for m in system.messages if m.bus == bus.name and m.targets)
 
 
-def _taker(message: Message, target: End) -> str:
+def _taker(system: System, message: Message, target: End) -> DottedName:
     """The procedure of a receiver."""
-    return f"Put_{ada_case(target.name)}" if message.call is None else received_as(message)
+    if message.call is not None:
+        return ref(ada_case(target.instance), received_as(message))
+    return put_of(system, target)
 
 
 def _format(message: Message) -> DottedName:
@@ -395,9 +398,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
             continue
         declarations.append(Object(item, type_name(system, message.type)))
         matches = _matches(message)
-        puts = tuple(
-            do(ref(ada_case(t.instance), _taker(message, t)), ref(item)) for t in message.targets
-        )
+        puts = tuple(do(_taker(system, message, t), ref(item)) for t in message.targets)
         unpack = do(
             ref("Codecs", codec_name(message), "Unpack"), _data(message), ref(item), ref("Valid")
         )
@@ -445,7 +446,7 @@ def _receiver(system: System, bus: Bus, header: str) -> list[Unit]:
     )
     context = {ref(root, "Codecs"), ANY, LAYOUTS}
     valued = [m for m in received if not m.controls]
-    context |= {ref(root, ada_case(t.instance)) for m in valued for t in m.targets}
+    context |= {ref(root, _taker(system, m, t).parent) for m in valued for t in m.targets}
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     if not all(is_plain(m) for m in received):

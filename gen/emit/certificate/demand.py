@@ -37,5 +37,5 @@ def work_of_jobs(task: Task, jobs: int) -> Expr:
 def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:
     """The demand of the work ``own`` of a task within a window, with blocking and interference."""
     name = name_of(task.element)
-    others = of_tasks(system, system.node(task.node)).others(name, window)
+    others = of_tasks(system, system.node(task.node), task.core).others(name, window)
     return plus(own, ref(f"{name}_B"), *others)

@@ -121,19 +121,20 @@ def _released(task: Task, divisor: int, cost: Expr) -> Expr:
     return demand_within(W, ref(f"{own}_J"), times(number(divisor), ref(f"{own}_T")), cost)
 
 
-def by_priority(system: System, node: Node) -> list[Task]:
-    """The tasks of a node, the most urgent first."""
-    return sorted((t for t in system.tasks if t.node == node.name), key=lambda t: -t.priority)
+def by_priority(system: System, node: Node, core: int) -> list[Task]:
+    """The tasks of a core, the most urgent first."""
+    here = (t for t in system.tasks if (t.node, t.core) == (node.name, core))
+    return sorted(here, key=lambda t: -t.priority)
 
 
 def platform(
-    system: System, node: Node, window: Expr, term: Callable[[Task, int, Expr], Expr]
+    system: System, node: Node, core: int, window: Expr, term: Callable[[Task, int, Expr], Expr]
 ) -> list[Expr]:
-    """The time of a node's clock and of its tasks' releases, of which ``term`` counts some."""
+    """The time of a core's clock and of its tasks' releases, of which ``term`` counts some."""
     own = ada_case(node.name)
     found: list[Expr] = []
     if node.release:
-        for task in by_priority(system, node):
+        for task in by_priority(system, node, core):
             ready = times(number(1 + task.sporadic), ref(f"{own}_Release"))
             found.append(term(task, 1, ready))
     if node.tick is not None and node.tick.wcet:
@@ -141,22 +142,23 @@ def platform(
     return found
 
 
-def of_tasks(system: System, node: Node) -> Ladder:
-    """The tasks of a node."""
+def of_tasks(system: System, node: Node, core: int) -> Ladder:
+    """The tasks of a core."""
     steps = (
         Interferer(
             name_of(task.element),
             tuple(_released(task, divisor, ref(c)) for divisor, c in costs(task).items()),
             task.priority,
         )
-        for task in by_priority(system, node)
+        for task in by_priority(system, node, core)
     )
-    base = f"{ada_case(node.name)}_Platform"
-    return Ladder(tuple(steps), base=base if platform(system, node, W, _released) else "")
+    base = f"{name_of(node.core_name(core))}_Platform"
+    return Ladder(tuple(steps), base=base if platform(system, node, core, W, _released) else "")
 
 
-def task_functions(system: System, node: Node) -> list[Decl]:
-    """The functions of a node: those of its platform, and those of its tasks."""
-    ladder = of_tasks(system, node)
-    own = [_function(ladder.base, platform(system, node, W, _released))] if ladder.base else []
+def task_functions(system: System, node: Node, core: int) -> list[Decl]:
+    """The functions of a core: those of its platform, and those of its tasks."""
+    ladder = of_tasks(system, node, core)
+    given = platform(system, node, core, W, _released)
+    own = [_function(ladder.base, given)] if ladder.base else []
     return [*own, *ladder.functions(last=False)]

@@ -151,6 +151,7 @@ def _delay(system: System, task: Task, at: Expr, window: Expr) -> list[Expr]:
         return times(OperatorChain("-", (ceiling(end, period), ceiling(begin, period))), cost)
 
     for other in system.tasks:
-        if other.node == task.node and other is not task and other.priority >= task.priority:
+        here = (other.node, other.core) == (task.node, task.core)
+        if here and other is not task and other.priority >= task.priority:
             terms += [term(other, divisor, ref(c)) for divisor, c in costs(other).items()]
-    return [*terms, *platform(system, node, window, term)]
+    return [*terms, *platform(system, node, task.core, window, term)]

@@ -118,8 +118,9 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
     for task in system.tasks:
         items += _terms(system, task)
     for node in system.nodes:
-        items += task_functions(system, node)
-        items += order(system, node)
+        for core in range(1, node.cores + 1):
+            items += task_functions(system, node, core)
+            items += order(system, node, core)
     for bus in system.buses:
         items += bus_terms(system, bus)
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
@@ -159,12 +160,13 @@ def _used(items: Sequence[Decl]) -> tuple[Decl, ...]:
 
 def blocker(system: System, task: Task) -> tuple[SharedObject, str] | None:
     """The object through which a task of lower priority can delay ``task`` longest, and that."""
-    level = {t.element: t.priority for t in system.tasks} | {"main": 0}
+    level = {t.element: t.priority for t in system.tasks}
     found: tuple[SharedObject, str] | None = None
     for item in system.objects:
-        lower = next((user for user in item.users if level[user] < task.priority), None)
+        lower = next((user for user in item.users if level.get(user, 0) < task.priority), None)
         longer = found is None or item.section > found[0].section
-        reaches = item.node == task.node and item.ceiling >= task.priority
+        here = (item.node, item.core) == (task.node, task.core)
+        reaches = here and item.ceiling >= task.priority
         if reaches and lower is not None and longer:
             found = item, lower
     return found

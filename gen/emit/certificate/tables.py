@@ -39,16 +39,16 @@ def level_of(task: Task) -> str:
     return task.element if task.driver_of is None else driver_element(task.driver_of)
 
 
-def order(system: System, node: Node) -> list[Decl]:
-    """The tasks of a node have the order of priority that their sums suppose."""
+def order(system: System, node: Node, core: int) -> list[Decl]:
+    """The tasks of a core have the order of priority that their sums suppose."""
     wrong: list[Expr] = []
-    for high, low in pairwise(by_priority(system, node)):
+    for high, low in pairwise(by_priority(system, node, core)):
         above, below = (ref(f"{name_of(level_of(t))}_Priority") for t in (high, low))
         if above == below:
             continue
         wrong.append(OperatorChain("/=" if high.priority == low.priority else "<=", (above, below)))
     problem = "must keep the order of its priorities"
-    return none_of(wrong, node.name, problem)
+    return none_of(wrong, node.core_name(core), problem)
 
 
 def table_terms(task: Task) -> list[Decl]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.crossing import core_of
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     Decl,
@@ -78,7 +79,9 @@ from ravenchart.gen.emit.components.packages import activity_package, published_
 from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import name_of, name_type, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
+from ravenchart.gen.emit.tables.core_units import at_core
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
+from ravenchart.gen.emit.tables.port_calls import CROSSINGS, put_of
 from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
     fault_units,
@@ -135,6 +138,8 @@ class Glue(Site):
             names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
             names.add(ref(root, UNIT))
+        if any(self._crosses(port) for port in component.inputs()):
+            names.add(ref(root, CROSSINGS))
         if any(releases(self, port) for port in component.inputs()):
             names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
         elif queued or self._served():
@@ -154,9 +159,8 @@ class Glue(Site):
             names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
         for port in component.outputs():
             ends, messages = self._targets(port.name)
-            names |= {
-                ref(root, ada_case(e.instance)) for e in ends if e.instance != self.instance.name
-            }
+            units = {put_of(self.system, end).first for end in ends}
+            names |= {ref(root, unit) for unit in units - {ada_case(self.instance.name)}}
             for message in self.system.messages:
                 if message.name in messages:
                     names.add(ref(root, ada_case(message.bus)))
@@ -321,9 +325,10 @@ class Glue(Site):
             null = default_value(self.system, port.type)
             of_type = type_name(self.system, port.type)
             items.append(Comment(f"[{self._element(port.name)}]"))
-            kind = "Releasing_Queues" if releases(self, port) else "Queues"
-            given = of_type, null, depth, policy, f"{port.name}.mailbox", ref(RUNTIME, kind)
-            items.append(self._queue(f"{name}_Mailbox", *given))
+            if not self._crosses(port):
+                kind = "Releasing_Queues" if releases(self, port) else "Queues"
+                given = of_type, null, depth, policy, f"{port.name}.mailbox", ref(RUNTIME, kind)
+                items.append(self._queue(f"{name}_Mailbox", *given))
             if not sampled and port in self._connected_inputs():
                 items.append(offers_of_port(self, port, of_type))
             view = ref(self.component, f"{name}_View")
@@ -452,11 +457,9 @@ class Glue(Site):
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
-            name = ref(f"Put_{ada_case(end.name)}")
-            target = (
-                name if end.instance == self.instance.name else ref(ada_case(end.instance), name)
-            )
-            body.append(do(target, ref("Item")))
+            target = put_of(self.system, end)
+            own = target.first == ada_case(self.instance.name)
+            body.append(do(ref(target.last) if own else target, ref("Item")))
         for message in self.system.messages:
             if message.name in messages:
                 body.append(
@@ -472,4 +475,10 @@ class Glue(Site):
 
 def emit_instances(system: System, header: str, *, noted: bool = False) -> tuple[Unit, ...]:
     """The packages of all instances."""
-    return tuple(u for i in system.instances for u in Glue(system, i, noted).units(header))
+    return tuple(
+        unit
+        for instance in system.instances
+        for unit in at_core(
+            Glue(system, instance, noted).units(header), system, core_of(system, instance.name)
+        )
+    )

@@ -94,7 +94,7 @@ class Rows(Site):
             limit: Expr = ref(self.component, f"{name}_Port", "Never_Stale")
             if port.max_age is not None:
                 limit = number(port.max_age // period)
-            body.append(do(ref(f"{name}_Mailbox", "Take"), ref(f"{name}_Item"), ref("Status")))
+            body.append(do(ref(self._mailbox(port), "Take"), ref(f"{name}_Item"), ref("Status")))
             body.append(
                 do(
                     ref(self.component, f"{name}_Port", "Handle"),
@@ -128,7 +128,7 @@ class Rows(Site):
         name = ada_case(port.name)
         grown = OperatorChain("/=", (ref(f"{name}_Losses"), ref(f"{name}_Lost_Before")))
         return [
-            Assign(f"{name}_Losses", ref(f"{name}_Mailbox", "Lost")),
+            Assign(f"{name}_Losses", ref(self._mailbox(port), "Lost")),
             IfStatement(((grown, (self._raise(event),)),)),
             Assign(f"{name}_Lost_Before", ref(f"{name}_Losses")),
         ]

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ravenchart.gen.derive.crossing import crossing_at
 from ravenchart.gen.emit.ada.expressions import Expr
-from ravenchart.gen.emit.ada.named import Named
+from ravenchart.gen.emit.ada.named import DottedName, Named
 from ravenchart.gen.emit.ada.naming import component_name, priority
 from ravenchart.gen.emit.ada.statements import Stmt, do
 from ravenchart.gen.emit.language.events import event_value
+from ravenchart.gen.emit.tables.port_calls import mailbox_of
 from ravenchart.gen.emit.tables.trace_calls import fault, note
 from ravenchart.gen.emit.tables.value_calls import record_values
 from ravenchart.gen.model.component import Activity, Data, Port
@@ -70,7 +72,15 @@ class Site:
         names |= {poll.port for poll in self.system.polls if poll.instance == self.instance.name}
         if self.noted:
             return self.instance.component.inputs()
-        return tuple(p for p in self.instance.component.inputs() if p.name in names)
+        here = (p for p in self.instance.component.inputs() if p.name in names)
+        return tuple(p for p in here if not self._crosses(p))
+
+    def _crosses(self, port: Port) -> bool:
+        """Whether the values of an input port come from another core."""
+        return crossing_at(self.system, End(self.instance.name, port.name)) is not None
+
+    def _mailbox(self, port: Port) -> DottedName:
+        return mailbox_of(self.system, End(self.instance.name, port.name))
 
     def _note(
         self, kind: str, name: str, element_kind: str, item: Expr | None = None

@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.derive.crossing import MAIN_CORE, core_of, other_cores
 from ravenchart.gen.derive.instants import has_offset
+from ravenchart.gen.derive.sharing import on_core
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     ArrayDefinition,
@@ -28,6 +30,7 @@ from ravenchart.gen.emit.ada.expressions import (
     Indexed,
     OperatorChain,
     StringLiteral,
+    all_else,
     arguments,
     equal,
     number,
@@ -51,6 +54,7 @@ from ravenchart.gen.emit.certificate.certified import (
     rows_agree,
     timed_by,
 )
+from ravenchart.gen.emit.tables.core_units import at_core
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
@@ -66,6 +70,7 @@ from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
+from .cores import emit_core_reports, emit_crossings, own_task
 from .reports import emit_main, emit_reports
 from .supervision import emit_supervision, offer_from_outside
 
@@ -78,15 +83,22 @@ PROBE_STACK = 16_384
 def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
     """Everything that is not about one component or instance."""
     units = [_health(system, header), _elements(system, header)]
-    if traced(system):
-        units.append(_trace(system, header))
-    if recording(system):
-        units.append(_recording(system, header))
+    away = other_cores(system)
+    for core in (MAIN_CORE, *away):
+        if core != MAIN_CORE:
+            units += at_core([_health(system, header, core)], system, core)
+        if traced(system):
+            units.append(_trace(system, header, core))
+        if recording(system):
+            units.append(_recording(system, header, core))
+    units += emit_crossings(system, header)
     units += [_probe(system, n, header) for n in system.nodes if n.probe is not None]
     for bus in system.buses:
         units += emit_bus(system, bus, header)
     for processor in system.processors:
-        units += _processor(system, processor, header)
+        units += at_core(_processor(system, processor, header), system, processor.core)
+    for core in away:
+        units += emit_core_reports(system, core, header)
     units += emit_supervision(system, header)
     units += emit_reports(system, header)
     units.append(emit_main(system, header))
@@ -98,8 +110,8 @@ def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
     return (_health(system, header), _elements(system, header))
 
 
-def _health(system: System, header: str) -> Unit:
-    args = arguments(Ceiling=priority(system.object("health").ceiling))
+def _health(system: System, header: str, core: int = MAIN_CORE) -> Unit:
+    args = arguments(Ceiling=priority(system.object(on_core("health", core)).ceiling))
     counters, reports = ref("Ravenchart.Health_Counters"), ref("Ravenchart.Fault_Reports")
     does = arguments(Record_Fault=ref("Counters.Record_Fault"))
     does += arguments(Note=ref("Trace.Buffer.Note")) if traced(system) else ()
@@ -127,20 +139,26 @@ def _holding(
     )
 
 
-def _trace(system: System, header: str) -> Unit:
+def _trace(system: System, header: str, core: int) -> Unit:
     depth = max(n.trace_depth for n in system.nodes)
-    args = arguments(Capacity=number(depth), Ceiling=priority(system.object("trace").ceiling))
-    return _holding(system, "Trace", "Buffer", "Ravenchart.Trace_Buffers", args, header)
+    ceiling = priority(system.object(on_core("trace", core)).ceiling)
+    args = arguments(Capacity=number(depth), Ceiling=ceiling)
+    unit = on_core("Trace", core)
+    return _holding(system, unit, "Buffer", "Ravenchart.Trace_Buffers", args, header)
 
 
-def _recording(system: System, header: str) -> Unit:
-    """The buffer of values, as deep as the trace, and the number of each."""
+def _recording(system: System, header: str, core: int) -> Unit:
+    """The buffer of a core's values, as deep as the trace, and the number of each."""
     depth = max(n.trace_depth for n in system.nodes)
-    args = arguments(Capacity=number(depth), Ceiling=priority(system.object(OBJECT).ceiling))
-    values = (item for item in elements(system) if item.kind == VALUE)
+    ceiling = priority(system.object(on_core(OBJECT, core)).ceiling)
+    args = arguments(Capacity=number(depth), Ceiling=ceiling)
+    here = {
+        one.element for one in system.recorded_values if core_of(system, one.of.instance) == core
+    }
+    values = (item for item in elements(system) if item.kind == VALUE and item.element in here)
     numbers = tuple(_numbered(constant_name(item.element), item) for item in values)
     package = Package(
-        ref(root_package(system), UNIT),
+        ref(root_package(system), on_core(UNIT, core)),
         (
             Comment("Numbers of the recorded values; trace.json has their names and locations."),
             *numbers,
@@ -231,9 +249,15 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         items += _budgets(processor)
     items.append(Comment(f"[{processor.name}]"))
     named = arguments(Name=StringLiteral(processor.name))
-    items.append(GenericInstance("Processor", generic, (*named, *args, *shared)))
-    items += _checks(processor, offset)
-    withs = {generic, ref("System"), ref(root, CERTIFICATE)}
+    own: tuple[Decl, ...] = ()
+    if processor.core == MAIN_CORE:
+        items.append(GenericInstance("Processor", generic, (*named, *args, *shared)))
+        items += _checks(processor, offset)
+        withs = {generic, ref("System"), ref(root, CERTIFICATE)}
+    else:
+        made, own, withs = _on_other_core(processor, (*named, *args, *shared))
+        items += made
+        withs |= {ref("System"), ref(root, CERTIFICATE)}
     if processor.released_by is None:
         withs.add(ref("Ravenchart.Schedules"))
     else:
@@ -245,11 +269,48 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     spec = Package(name, tuple(items), (SPARK,))
-    body = Package(name, _processor_body(system, processor), (SPARK,), is_body=True)
+    bodies = (*_processor_body(system, processor), *own)
+    body = Package(name, bodies, (SPARK,), is_body=True)
     return [
         Unit(header, tuple(sorted(withs)), spec),
         Unit(header, tuple(sorted(context - withs)), body),
     ]
+
+
+def _on_other_core(
+    processor: Processor, given: tuple[Arg, ...]
+) -> tuple[list[Decl], tuple[Decl, ...], set[DottedName]]:
+    """The parts of a processor with its own task: spec, body, and the units that they need."""
+    values = {str(arg.name): arg.value for arg in given}
+    measured, run = ref("Ravenchart.Measured_Releases"), ref("Releases.Run")
+    found: list[Decl] = []
+    if processor.released_by is None:
+        loop = ref("Ravenchart.Periodic_Loops")
+        work = arguments(Run=run)
+        taken: tuple[str, ...] = ("Name", "Cycle", "Period", "Offset")
+    else:
+        loop = ref("Ravenchart.Sporadic_Loops")
+        work = arguments(Start_Release=ref("Releases.Start_Release"), Run=run)
+        taken = ("Name", "Minimum_Separation", "Wait")
+        rows = ArrayDefinition("Row", "Ravenchart.Schedules.Slot")
+        found.append(TypeDeclaration("Row_Table", rows))
+        every = record({"Divisor": number(1), "Phase": number(0)})
+        values |= {"Table_Type": ref("Row_Table"), "Table": all_else(every)}
+    parts = (
+        *("Activity_Id", "Table_Type", "Table", "Deadline", "Ceiling"),
+        *("Execute", "On_Deadline_Miss", "On_Executed"),
+    )
+    releases = tuple(Arg(name, values[name]) for name in parts if name in values)
+    looped = (*(Arg(name, values[name]) for name in taken), *work)
+    spec, body = own_task(
+        "Processor", processor.core, values["Task_Priority"], processor.stack_bytes
+    )
+    found += [
+        GenericInstance("Releases", measured, releases),
+        GenericInstance("Run_All", loop, looped, kind="procedure"),
+        *spec,
+    ]
+    return found, body, {measured, loop, ref("Ravenchart.Schedules")}
 
 
 def _wait(processor: Processor) -> DottedName:

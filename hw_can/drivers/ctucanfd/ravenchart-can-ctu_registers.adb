@@ -15,24 +15,24 @@ is
       T           : out Bit_Timing;
       Found       : out Boolean)
    is
-      Count : Hertz;
+      Prescaler : Hertz;
+      Count     : Hertz;
    begin
-      T     := (others => <>);
-      Found := False;
-      for Prescaler in Hertz range 1 .. 255 loop
-         Count := Clock / (Prescaler * Rate);
-         if Count in Quanta_Count'First .. Most
-           and then Prescaler * Rate * Count = Clock
-         then
-            T :=
-              (Prescaler   => Prescaler,
+      Bit_Timings.Choose_Quanta
+        (Clock, Rate,
+         Last_Prescaler => 255,
+         Least          => Quanta_Count'First,
+         Most           => Most,
+         Prescaler      => Prescaler,
+         Quanta         => Count,
+         Found          => Found);
+      T :=
+        (if Found
+         then (Prescaler   => Prescaler,
                Propagation => Count - 1 - 2 * (Count / 5),
                Phase_1     => Count / 5,
-               Phase_2     => Count / 5);
-            Found := True;
-            return;
-         end if;
-      end loop;
+               Phase_2     => Count / 5)
+         else (others => <>));
    end Choose_Timing;
 
 end Ravenchart.Can.Ctu_Registers;

@@ -336,21 +336,6 @@ is
       Lemma_Digits (Line, Any_Frames.Format (F), Id);
    end Put_Id;
 
-   -------------
-   -- Data_Of --
-   -------------
-
-   function Data_Of (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes is
-   begin
-      return Result : Fd_Frames.Fd_Bytes := (others => 0) do
-         for I in 0 .. Carried (F) - 1 loop
-            Result (I) := Any_Frames.Byte (F, I);
-            pragma Loop_Invariant
-              (for all J in 0 .. I => Result (J) = Any_Frames.Byte (F, J));
-         end loop;
-      end return;
-   end Data_Of;
-
    --------------
    -- Frame_In --
    --------------
@@ -406,10 +391,10 @@ is
             F := Any_Frames.To_Any (Plain);
          end if;
          pragma Assert (Carried (F) = Length);
-         Lemma_Holds (Line, Behind, Length, Bytes, Data_Of (F));
+         Lemma_Holds (Line, Behind, Length, Bytes, Any_Frames.Bytes (F));
       end if;
       pragma Assert (Any_Frames.Format (F) = Format);
-      pragma Assert (Holds (Line, Behind, Carried (F), Data_Of (F)));
+      pragma Assert (Holds (Line, Behind, Carried (F), Any_Frames.Bytes (F)));
       return (Found => True, F => F);
    end Frame_In;
 
@@ -429,7 +414,7 @@ is
       Put_Id (Line, F);
       Line (Header (Format)) :=
         Image (Digit_Value (Fd_Frames.Code (Length (F))));
-      Put_Bytes (Line, Header (Format) + 1, Carried (F), Data_Of (F));
+      Put_Bytes (Line, Header (Format) + 1, Carried (F), Any_Frames.Bytes (F));
       Count := Header (Format) + 2 * Carried (F);
    end Write;
 
@@ -455,7 +440,7 @@ is
          and then Carried (Read.F) = Carried (F));
       Lemma_Same_Bytes
         (Line, Header (Any_Frames.Format (F)) + 1, Carried (F),
-         Data_Of (Read.F), Data_Of (F));
+         Any_Frames.Bytes (Read.F), Any_Frames.Bytes (F));
    end Lemma_Read_Back;
 
 end Ravenchart.Can.Slcan.Frame_Lines;

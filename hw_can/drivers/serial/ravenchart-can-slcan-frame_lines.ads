@@ -222,14 +222,6 @@ is
    with Global => null;
    --  The number of bytes of data that F carries.
 
-   function Data_Of (F : Any_Frames.Any_Frame) return Fd_Frames.Fd_Bytes
-   with
-     Global => null,
-     Post   =>
-       (for all I in 0 .. Carried (F) - 1 =>
-          Data_Of'Result (I) = Any_Frames.Byte (F, I));
-   --  The bytes of data that F carries; 0 behind them.
-
    function Stands_For
      (Line  : Line_Bytes;
       Count : Content_Length;
@@ -243,7 +235,7 @@ is
          = Length (F)
        and then Holds
          (Line, Header (Any_Frames.Format (F)) + 1, Carried (F),
-          Data_Of (F)))
+          Any_Frames.Bytes (F)))
    with
      Ghost,
      Global => null;

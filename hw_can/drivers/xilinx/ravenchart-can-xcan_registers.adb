@@ -12,22 +12,23 @@ is
    procedure Choose_Timing
      (Clock, Rate : Hertz; T : out Bit_Timing; Found : out Boolean)
    is
-      Count : Hertz;
+      Prescaler : Hertz;
+      Count     : Hertz;
    begin
-      T     := (others => <>);
-      Found := False;
-      for Prescaler in Hertz range 1 .. 256 loop
-         Count := Clock / (Prescaler * Rate);
-         if Count in Quanta_Count and then Prescaler * Rate * Count = Clock
-         then
-            T :=
-              (Prescaler => Prescaler,
+      Bit_Timings.Choose_Quanta
+        (Clock, Rate,
+         Last_Prescaler => 256,
+         Least          => Quanta_Count'First,
+         Most           => Quanta_Count'Last,
+         Prescaler      => Prescaler,
+         Quanta         => Count,
+         Found          => Found);
+      T :=
+        (if Found
+         then (Prescaler => Prescaler,
                Segment_1 => Count - 1 - Count / 5,
-               Segment_2 => Count / 5);
-            Found := True;
-            return;
-         end if;
-      end loop;
+               Segment_2 => Count / 5)
+         else (others => <>));
    end Choose_Timing;
 
 end Ravenchart.Can.Xcan_Registers;

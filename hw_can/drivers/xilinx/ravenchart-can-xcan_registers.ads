@@ -9,10 +9,12 @@
 --  Timing       constant; Choose_Timing at most 256 steps
 
 with Interfaces;
+with Ravenchart.Can.Bit_Timings;
 
 package Ravenchart.Can.Xcan_Registers
   with SPARK_Mode, Pure
 is
+   use type Bit_Timings.Hertz;
    use type Interfaces.Unsigned_32;
 
    subtype Word is Interfaces.Unsigned_32;
@@ -86,8 +88,7 @@ is
 
    --  Bit timing
 
-   type Hertz is range 0 .. 2**40;
-   --  A clock, or a bit rate in bits per second.
+   subtype Hertz is Bit_Timings.Hertz;
 
    subtype Quanta_Count is Hertz range 8 .. 21;
    --  Time quanta of a bit: in this range no field below is too small.

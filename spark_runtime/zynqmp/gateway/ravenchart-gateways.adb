@@ -59,7 +59,7 @@ package body Ravenchart.Gateways is
 
    Chunk : constant := 4_096;
 
-   type Octets is array (1 .. Chunk) of Interfaces.Unsigned_8;
+   type Chunk_Bytes is array (1 .. Chunk) of Interfaces.Unsigned_8;
 
    function Call
      (Operation : Interfaces.Unsigned_64; Block : Words)
@@ -75,8 +75,8 @@ package body Ravenchart.Gateways is
    function Number (Place : System.Address) return Interfaces.Unsigned_64
    is (Interfaces.Unsigned_64 (System.Storage_Elements.To_Integer (Place)));
 
-   Input       : Octets;
-   Output      : Octets;
+   Input       : Chunk_Bytes;
+   Output      : Chunk_Bytes;
    Written     : Natural range 0 .. Chunk := 0;
    From_Bench  : Interfaces.Unsigned_64 := 0;
    To_Bench    : Interfaces.Unsigned_64 := 0;

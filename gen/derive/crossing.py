@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Values that go from one core of a node to another: no protected object holds them.
+
+A ceiling protects an object on one core only. So the mailbox of an input port whose sender runs
+on another core is made of atomic objects alone, with one task on each side (see
+`Ravenchart.Crossing_Boards` and `Ravenchart.Crossing_Queues`), and what the main program reports
+of another core comes to it in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ravenchart.gen.model.component import Port
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.system import System
+
+MAIN_CORE = 1
+"""The core of the main program, the drivers and the host probe."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crossing:
+    """An input port that gets values from another core."""
+
+    target: End
+    port: Port
+    senders: tuple[str, ...]
+    """The processors that put values into its mailbox."""
+    sent_on: int
+    """The core of the first of them."""
+    taken_on: int
+    """The core of the port's handler."""
+
+    @property
+    def element(self) -> str:
+        """``instance.port``"""
+        return f"{self.target.instance}.{self.target.name}"
+
+
+def reporter(node: Node, core: int) -> str:
+    """The task that hands the main program what it reports of another core."""
+    return f"{node.name}.reporter_{core}"
+
+
+def other_cores(system: System) -> tuple[int, ...]:
+    """The cores with processors, but for that of the main program."""
+    if all(node.cores == 1 for node in system.nodes):
+        return ()
+    return tuple(sorted({p.core for p in system.processors} - {MAIN_CORE}))
+
+
+def core_of(system: System, instance: str) -> int:
+    """The core of an instance: that of its rows."""
+    if not other_cores(system):
+        return MAIN_CORE
+    return next(
+        (system.processor_of(slot.element).core for slot in system.slots_of(instance)), MAIN_CORE
+    )
+
+
+def crossings(system: System) -> tuple[Crossing, ...]:
+    """Every one of a program, in the order of the model."""
+    return tuple(_crossings(system)) if other_cores(system) else ()
+
+
+def crossing_at(system: System, end: End) -> Crossing | None:
+    """The one that ends in a port, if one does."""
+    return next((one for one in crossings(system) if one.target == end), None)
+
+
+def senders_to(system: System, end: End) -> tuple[str, ...]:
+    """The processors that put values into the mailbox of an input port."""
+    found: list[str] = []
+    for connection in system.connections:
+        if connection.target == end:
+            source = system.instance(connection.source.instance)
+            for row in source.component.senders(connection.source.name):
+                found.append(system.processor_of(f"{source.name}.{row.name}").name)
+    for message in system.messages:
+        if end in message.targets:
+            found += [p.name for p in system.processors if p.released_by == message.bus]
+    return tuple(dict.fromkeys(found))
+
+
+def _crossings(system: System) -> Iterator[Crossing]:
+    cores = {processor.name: processor.core for processor in system.processors}
+    for instance in system.instances:
+        for port in instance.component.inputs():
+            end = End(instance.name, port.name)
+            home = system.processor_of(f"{instance.name}.ports").core
+            senders = senders_to(system, end)
+            away = [cores[name] for name in senders if cores[name] != home]
+            if away:
+                yield Crossing(end, port, senders, away[0], home)

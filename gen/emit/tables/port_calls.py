@@ -1,0 +1,29 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Calls that put a value into an input port, and take it: on one core, or from core to core."""
+
+from __future__ import annotations
+
+from ravenchart.gen.derive.crossing import crossing_at
+from ravenchart.gen.emit.ada.named import DottedName, ref
+from ravenchart.gen.emit.ada.naming import ada_case, constant_name
+from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.system import System
+
+CROSSINGS = "Crossings"
+"""The package of all that goes from core to core, below the system's."""
+
+
+def put_of(system: System, end: End) -> DottedName:
+    """The procedure that puts a value into an input port, with the unit that has it."""
+    if crossing_at(system, end) is None:
+        return ref(ada_case(end.instance), f"Put_{ada_case(end.name)}")
+    return ref(CROSSINGS, f"Put_{constant_name(str(end))}")
+
+
+def mailbox_of(system: System, end: End) -> DottedName:
+    """The package of the mailbox, as the instance of the port sees it."""
+    if crossing_at(system, end) is None:
+        return ref(f"{ada_case(end.name)}_Mailbox")
+    return ref(CROSSINGS, constant_name(str(end)))
