@@ -62,7 +62,9 @@ def alone(system: System, name: str) -> System:
     system = as_one(system)
     instance = system.instance(name)
     component = _with_stubs(instance.component)
-    processors = tuple(_only(processor, instance.name) for processor in system.processors)
+    processors = tuple(
+        replace(_only(processor, instance.name), core=1) for processor in system.processors
+    )
     processors = tuple(processor for processor in processors if processor.slots)
     processors = _with_rows(processors, instance, component)
     made = replace(

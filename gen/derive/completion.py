@@ -193,6 +193,19 @@ def on_one_node(system: System) -> System:
     return one if one is system else replace(one, objects=objects_on_node(one))
 
 
+def on_one_core(system: System) -> System:
+    """The same with all tasks of its only node on one core, and the objects that they share."""
+    if all(node.cores == 1 for node in system.nodes):
+        return system
+    one = replace(
+        system,
+        nodes=tuple(replace(node, cores=1) for node in system.nodes),
+        processors=tuple(replace(processor, core=1) for processor in system.processors),
+        tasks=tuple(replace(task, core=1) for task in system.tasks),
+    )
+    return replace(one, objects=objects_on_node(one))
+
+
 def objects_of(system: System) -> tuple[SharedObject, ...]:
     """Every protected object of the generated programs, with its users and ceiling.
 

@@ -268,6 +268,17 @@ is
       Put ("W", (1 => Long_Long_Integer (Longest)));
    end Put_Host_Latency;
 
+   --------------------
+   -- Put_Other_Core --
+   --------------------
+
+   procedure Put_Other_Core (Looked : Nanoseconds)
+   with Refined_Global => (In_Out => Services.State)
+   is
+   begin
+      Put ("O", (1 => Long_Long_Integer (Looked)));
+   end Put_Other_Core;
+
    -------------
    -- Put_Now --
    -------------

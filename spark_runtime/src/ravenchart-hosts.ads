@@ -28,6 +28,7 @@
 --     L what count      losses of one kind
 --     W host_latency
 --     N now             the time at which the statistics were read
+--     O time            when another core read the lines that follow
 --     F feeds           of the watchdog
 --     END
 
@@ -102,6 +103,11 @@ is
        (Input  => (Epochs.Start, Ada.Real_Time.Clock_Time),
         In_Out => Process);
    --  Write an N line: the lines that follow were read no earlier.
+
+   procedure Put_Other_Core (Looked : Nanoseconds)
+   with Global => (In_Out => Process);
+   --  Write an O line: another core read the lines that follow, no earlier
+   --  than Looked, which counts from Epochs.Start.
 
    procedure Put_Feeds (Count : Event_Count)
    with Global => (In_Out => Process);

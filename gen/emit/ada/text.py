@@ -295,18 +295,24 @@ def _declaration(decl: Decl) -> Doc:
         case GenericInstance(name, generic, args, kind):
             head = f"{kind} {name} is new {generic.text}"
             return group(head, nest(SOFT, argument_layout([argument(a) for a in args]), by=2), ";")
-        case Package():
-            return _package(decl)
-        case Protected():
-            return _protected(decl)
-        case SingleTask():
-            return _task(decl)
+        case Package() | Protected() | SingleTask():
+            return _enclosing(decl)
         case UseType(name) | UsePackage(name):
             return f"use {'type ' if isinstance(decl, UseType) else ''}{name.text};"
         case Pragma(name, args):
             return _pragma(name, args)
         case Comment(text):
             return _comment(text)
+
+
+def _enclosing(decl: Package | Protected | SingleTask) -> Doc:
+    match decl:
+        case Package():
+            return _package(decl)
+        case Protected():
+            return _protected(decl)
+        case SingleTask():
+            return _task(decl)
 
 
 def _enumeration(decl: EnumType) -> Doc:

@@ -138,8 +138,6 @@ class Glue(Site):
             names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
             names.add(ref(root, UNIT))
-        if any(self._crosses(port) for port in component.inputs()):
-            names.add(ref(root, CROSSINGS))
         if any(releases(self, port) for port in component.inputs()):
             names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
         elif queued or self._served():
@@ -157,16 +155,24 @@ class Glue(Site):
         names |= {ref(root, unit) for unit in providers(self.system, self.instance)}
         for event in component.events:
             names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
-        for port in component.outputs():
-            ends, messages = self._targets(port.name)
-            units = {put_of(self.system, end).first for end in ends}
-            names |= {ref(root, unit) for unit in units - {ada_case(self.instance.name)}}
-            for message in self.system.messages:
-                if message.name in messages:
-                    names.add(ref(root, ada_case(message.bus)))
+        names |= {ref(root, unit) for unit in self._units_of_ports()}
         names |= answering(self.system, self.instance)
         names -= {instance_package(self.system, self.instance), *self._spec_withs()}
         return tuple(sorted(names))
+
+    def _units_of_ports(self) -> Iterator[str]:
+        """Where the values of its ports go, and come from another core."""
+        component = self.instance.component
+        if any(self._crosses(port) for port in component.inputs()):
+            yield CROSSINGS
+        for port in component.outputs():
+            ends, messages = self._targets(port.name)
+            for unit in {put_of(self.system, end).first for end in ends}:
+                if unit != ada_case(self.instance.name):
+                    yield unit
+            for message in self.system.messages:
+                if message.name in messages:
+                    yield ada_case(message.bus)
 
     # --- spec
 

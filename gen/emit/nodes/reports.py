@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.crossing import MAIN_CORE, core_of, other_cores
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
     Aspect,
     Decl,
     Object,
     Package,
+    Param,
     Subprogram,
     Unit,
     UseType,
@@ -24,7 +26,6 @@ from ravenchart.gen.emit.ada.expressions import (
     Prefix,
     StringLiteral,
     call,
-    equal,
     number,
     plain,
     up_to,
@@ -54,6 +55,16 @@ from ravenchart.gen.model.nodes import DRAIN_PERIOD
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, System
 
+from .cores import (
+    SUM,
+    awaiting,
+    drained,
+    found_on,
+    of_processor,
+    of_queue,
+    report_unit,
+    statistics_of,
+)
 from .supervision import safe_state, supervised
 
 
@@ -67,11 +78,15 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         spec += [Subprogram("Drain_Trace"), Comment("Hand the trace to the host.")]
         bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
+    away = other_cores(system)
+    bodies += [awaiting(core) for core in away]
     bodies += [_report(system, p) for p in system.processors]
     steps: list[Stmt] = [do("Ravenchart.Hosts.Put_Now")]
-    steps += [do(ref(f"Report_{ada_case(p.name)}")) for p in system.processors]
+    steps += [do(f"Await_Core_{core}", ref(found_on(core))) for core in away]
+    steps += [_reported(p) for p in system.processors]
     steps += _queues(system)
     steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
+    steps += [_with_faults(core) for core in away]
     for bus in system.buses:
         log = f"{ada_case(bus.name)}_Faults"
         steps.append(do(ref(ada_case(bus.name), "Controller.Read_Faults"), ref(log)))
@@ -86,10 +101,15 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     )
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
     declarations += [Object("Queue_Fill", FILL) for _ in _of_queues(root, system)][:1]
+    for core in away:
+        declarations.append(Object(found_on(core), ref(report_unit(core), "Findings")))
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
         for buffer, label in _buffers(system):
             steps.append(Assign("Lost", ref(buffer, "Lost")))
+            for core in away:
+                there = ref(found_on(core), f"{label.capitalize()}_Lost")
+                steps.append(Assign("Lost", call(SUM, ref("Lost"), there)))
             word = StringLiteral(label)
             steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref("Lost")))
     for bus in system.buses:
@@ -110,6 +130,16 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         steps.append(do("Liveness_Supervision.Supervisor.Read", ref("Fed")))
         steps.append(do("Ravenchart.Hosts.Put_Feeds", ref("Fed")))
     bodies.append(Subprogram("Put_All", declarations=tuple(declarations), body=tuple(steps)))
+    context = tuple(sorted(_context(system, root)))
+    return [
+        Unit(header, (), Package(name, tuple(spec), (SPARK,))),
+        Unit(header, context, Package(name, tuple(bodies), (SPARK,), is_body=True)),
+    ]
+
+
+def _context(system: System, root: str) -> set[DottedName]:
+    """The units that the reports need."""
+    away = other_cores(system)
     context = {
         ref("Ravenchart.Hosts"),
         ref("Ravenchart.Health"),
@@ -121,6 +151,8 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     context |= {ref(root, ada_case(b.name)) for b in system.buses}
     if system.buses:
         context |= {ref("Ravenchart.Can"), ref("Ravenchart.Can.Fault_Notices")}
+    context |= {ref(root, report_unit(core)) for core in away}
+    context |= {ref("Ada.Real_Time")} if away else set()
     if any(n.probe for n in system.nodes):
         context.add(ref(root, "Host_Probe"))
     if supervised(system):
@@ -128,10 +160,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Queueing"), ref("Ravenchart.Traces")}
         context |= _of_values(root) if recording(system) else set()
-    return [
-        Unit(header, (), Package(name, tuple(spec), (SPARK,))),
-        Unit(header, tuple(sorted(context)), Package(name, tuple(bodies), (SPARK,), is_body=True)),
-    ]
+    return context
 
 
 def _queued(system: System) -> Iterator[tuple[Instance, Region]]:
@@ -145,14 +174,19 @@ def _queues(system: System) -> Iterator[Stmt]:
     """Hand the fill of each queue of events to the host."""
     for instance, region in _queued(system):
         own = element_constant(f"{instance.name}.{region.name}", "region")
-        yield do(ref(ada_case(instance.name), read_name(region)), ref("Queue_Fill"))
-        yield do("Ravenchart.Hosts.Put_Queue", ref("Elements", own), ref("Queue_Fill"))
+        found, core = ref("Queue_Fill"), core_of(system, instance.name)
+        if core == MAIN_CORE:
+            yield do(ref(ada_case(instance.name), read_name(region)), found)
+        else:
+            found = ref(found_on(core), of_queue(instance, region))
+        yield do("Ravenchart.Hosts.Put_Queue", ref("Elements", own), found)
 
 
 def _of_queues(root: str, system: System) -> Iterator[DottedName]:
     """The units that this needs: none where no region has a queue."""
     for instance, _ in _queued(system):
-        yield from (ref(root, ada_case(instance.name)), ref("Ravenchart.Queueing"))
+        if core_of(system, instance.name) == MAIN_CORE:
+            yield from (ref(root, ada_case(instance.name)), ref("Ravenchart.Queueing"))
 
 
 TRACE, VALUES = ref("Trace.Buffer"), ref(UNIT, "Values")
@@ -174,38 +208,46 @@ def _drain(system: System) -> Subprogram:
         Object("Item", "Ravenchart.Traces.Trace_Record"),
         Object("Status", "Ravenchart.Queueing.Take_Status"),
     ]
-    body = [_drained(TRACE, "Item", "Ravenchart.Hosts.Put_Trace")]
+    put_trace = do("Ravenchart.Hosts.Put_Trace", ref("Item"))
+    put_value = do("Ravenchart.Hosts.Value_Lines.Put", ref("Value"))
+    away = [ref(report_unit(core)) for core in other_cores(system)]
+    body = [drained(TRACE, "Item", put_trace)]
+    body += [drained(ref(unit, "Trace_Out"), "Item", put_trace) for unit in away]
     if recording(system):
         declarations.insert(2, Object("Value", "Ravenchart.Recorded_Values.Value_Record"))
-        body.append(_drained(VALUES, "Value", "Ravenchart.Hosts.Value_Lines.Put"))
+        body.append(drained(VALUES, "Value", put_value))
+        body += [drained(ref(unit, "Values_Out"), "Value", put_value) for unit in away]
     return Subprogram("Drain_Trace", declarations=tuple(declarations), body=tuple(body))
 
 
-def _drained(buffer: DottedName, item: str, put: str) -> Loop:
-    """Hand all that a buffer holds to the host."""
-    empty = equal(ref("Status"), ref("Ravenchart.Queueing.Empty"))
+def _with_faults(core: int) -> Loop:
+    """Add the faults of another core."""
+    own, there = Indexed("Faults", ref("Kind")), Indexed(f"{found_on(core)}.Faults", ref("Kind"))
     return Loop(
-        None,
-        (
-            do(ref(buffer, "Take"), ref(item), ref("Status")),
-            IfStatement(((empty, (ExitStatement(),)),)),
-            do(put, ref(item)),
-        ),
+        ForLoop("Kind", "Ravenchart.Health.Fault_Kind"), (Assign(own, call(SUM, own, there)),)
     )
+
+
+def _reported(processor: Processor) -> Stmt:
+    """The call that hands the statistics of a processor to the host."""
+    away = processor.core != MAIN_CORE
+    given = [ref(found_on(processor.core), of_processor(processor))] if away else []
+    return do(f"Report_{ada_case(processor.name)}", *given)
 
 
 def _report(system: System, processor: Processor) -> Subprogram:
     package = ada_case(processor.name)
     own = ref("Elements", element_constant(processor.name, "processor"))
     row = row_number(processor, ref(package, "Row"), "Row")
+    here = processor.core == MAIN_CORE
+    kept = (Object("Found", statistics_of(processor)),) if here else ()
+    observed = (do(ref(package, "Processor.Observe"), ref("Found")),) if here else ()
     return Subprogram(
         f"Report_{package}",
-        declarations=(
-            UseType("Ravenchart.Element_Id"),
-            Object("Found", ref(package, "Processor.Statistics")),
-        ),
+        () if here else (Param("Found", "in", statistics_of(processor)),),
+        declarations=(UseType("Ravenchart.Element_Id"), *kept),
         body=(
-            do(ref(package, "Processor.Observe"), ref("Found")),
+            *observed,
             do(
                 "Ravenchart.Hosts.Put_Processor",
                 own,
@@ -226,6 +268,11 @@ def _report(system: System, processor: Processor) -> Subprogram:
             ),
         ),
     )
+
+
+def _pinned(system: System) -> tuple[Aspect, ...]:
+    """Where there are several cores, the main program and the tasks that it starts have one."""
+    return (Aspect("CPU", plain(MAIN_CORE)),) if other_cores(system) else ()
 
 
 def emit_main(system: System, header: str) -> Unit:
@@ -279,7 +326,7 @@ def emit_main(system: System, header: str) -> Unit:
         tuple(sorted(withs)),
         Subprogram(
             f"{root}_Main",
-            aspects=(SPARK, Aspect("Priority", LOWEST)),
+            aspects=(SPARK, Aspect("Priority", LOWEST), *_pinned(system)),
             declarations=(
                 UseType("Ada.Real_Time.Time"),
                 Object(

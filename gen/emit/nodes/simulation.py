@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ravenchart.gen.derive.completion import on_one_node
+from ravenchart.gen.derive.completion import on_one_core, on_one_node
 from ravenchart.gen.emit.ada.declarations import (
     ArrayDefinition,
     Decl,
@@ -65,8 +65,8 @@ Stimulus = tuple[str, str, Type | None]
 
 
 def simulated(system: System) -> System:
-    """The part of a system that can be simulated: no bus, no trace, all on one node."""
-    system = on_one_node(system)
+    """The part of a system that can be simulated: no bus, no trace, all on one node and core."""
+    system = on_one_core(on_one_node(system))
     processors = tuple(
         p for p in system.processors if p.released_by is None or p.released_by_port is not None
     )
