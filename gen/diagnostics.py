@@ -166,7 +166,7 @@ CODES: Mapping[str, str] = {
     "RV-0708": "A processor's offset is not shorter than its period.",
     "RV-0709": "A critical section is longer than what executes it.",
     "RV-0710": "A processor is on a core that its node does not have.",
-    "RV-0711": "A protected object is used on several cores.",
+    "RV-0711": "Tasks of several cores share what only tasks of one core can share.",
     "RV-0712": "The silence of a processor is not supervised, or cannot be.",
     "RV-0713": "Only a processor itself waits for the event that its silence raises.",
     "RV-0714": "A bus with `watch` is not watched by exactly one row on each of its nodes.",

@@ -44,6 +44,7 @@ EXAMPLES = (
     "j1939_node",
     "pump",
     "qhsmtst",
+    "seam_tracker",
     "surgical_robot",
     "three_components",
     "two_nodes",

@@ -80,6 +80,8 @@ class TraceMap:
     system: str
     digest: str
     elements: Mapping[int, NumberedElement]
+    cores: int = 1
+    """The cores of its node: the records of each come in order, not those of all together."""
 
     def named(self, name: str, kind: str) -> NumberedElement:
         """The element of that kind and name, in any case; KeyError where there is none."""
@@ -173,6 +175,8 @@ class Observation:
     """Time that a hypervisor took of the core during the whole run, as its kernel counts it."""
     now: Ns | None = None
     """When the counts were read, in the controller's own time."""
+    read_at: Ns | None = None
+    """When the processors of the next lines were looked at: by another core, before ``now``."""
     feeds: int | None = None
     """How often the supervision fed the watchdog, where there is one."""
     complete: bool = False
@@ -241,7 +245,8 @@ def read_map(text: str, file: str = "trace.json") -> TraceMap:
         numbered = {e.number: e for e in elements}
         if len(numbered) != len(elements):
             raise TraceError(f"{file}: error: two elements have the same id")
-        return TraceMap(str(raw["system"]), str(raw["digest"]), numbered)
+        cores = int(raw.get("cores", 1))
+        return TraceMap(str(raw["system"]), str(raw["digest"]), numbered, cores)
     except json.JSONDecodeError as fault:
         raise TraceError(f"{file}:{fault.lineno}: error: not JSON: {fault.msg}") from None
     except (KeyError, TypeError, ValueError) as fault:
@@ -256,6 +261,9 @@ def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -
             take_line(line, seen)
         except ValueError as fault:
             raise TraceError(f"{file}:{number}: error: {fault}") from None
+    if trace_map.cores > 1:
+        seen.records.sort(key=lambda record: record.time)
+        seen.values.sort(key=lambda record: record.time)
     return seen
 
 
@@ -323,7 +331,9 @@ def _take(words: list[str], seen: Observation) -> None:
         case ["E", clock]:
             seen.start = Ns(_count(clock))
         case ["N", now]:
-            seen.now = Ns(_count(now))
+            seen.now = seen.read_at = Ns(_count(now))
+        case ["O", looked]:
+            seen.read_at = Ns(_count(looked))
         case ["END"]:
             seen.complete = True
         case _:
@@ -334,7 +344,7 @@ def _take_count(words: list[str], seen: Observation) -> None:
     match words:
         case ["P", number, releases, misses, worst, *last] if len(last) <= 1:
             counts = Releases(
-                _count(releases), _count(misses), Ns(_count(worst)), seen.now,
+                _count(releases), _count(misses), Ns(_count(worst)), seen.read_at,
                 Ns(_count(last[0])) if last else None,
             )  # fmt: skip
             name = _known(number, seen.map, "processor").name

@@ -115,7 +115,8 @@ class _Drawing:
         for processor in processors:
             look = {"style": "filled", "fillcolor": PAPER}
             table = Drawn(_table_name(processor), {"label": _table(processor)})
-            items.append(_framed(f"processor {processor.name}", _title(processor), look, [table]))
+            title = _title(processor, several=node.cores > 1)
+            items.append(_framed(f"processor {processor.name}", title, look, [table]))
         for start in range(0, len(processors), IN_A_ROW):
             row = [_table_name(p) for p in processors[start : start + IN_A_ROW]]
             items += (DotEdge(a, b, _HIDDEN) for a, b in pairwise((*row, _rim(node))))
@@ -238,13 +239,12 @@ def _framed(name: str, label: str, look: Attributes, items: Sequence[DotItem]) -
     return Group(cluster(name), (Defaults("graph", frame | look), *items))
 
 
-def _title(processor: Processor) -> str:
+def _title(processor: Processor, *, several: bool) -> str:
     release = f"every {shown(processor.period)}"
     if processor.released_by is not None:
         release = f"on {processor.released_by}, at most {release}"
-    facts = (
-        f'<font point-size="{SMALL}">{html(release)}, priority {processor.priority}{ROOM}</font>'
-    )
+    place = f"priority {processor.priority}{f', core {processor.core}' if several else ''}"
+    facts = f'<font point-size="{SMALL}">{html(release)}, {place}{ROOM}</font>'
     return f"processor {html(processor.name, 'b')}{LEFT}{facts}{LEFT}"
 
 

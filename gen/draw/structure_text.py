@@ -11,7 +11,7 @@ from ravenchart.gen.language.names import path_name
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.component import Direction
 from ravenchart.gen.model.instances import End, Instance
-from ravenchart.gen.model.system import System
+from ravenchart.gen.model.system import Processor, System
 
 from .boxes import Box, boxes
 from .devices import device_links, devices_of, kind_of
@@ -43,7 +43,7 @@ def plantuml(system: System) -> str:
         for target in message.targets:
             lines.append(f"{message.bus} --> {_end(system, target)} : {_carried(message)}")
     for processor in system.processors:
-        lines += [f"note as {processor.name}_table", f"  processor {processor.name}"]
+        lines += [f"note as {processor.name}_table", f"  {_named(system, processor)}"]
         lines += [*(f"  {slot.element}" for slot in processor.slots), "end note"]
     return "".join(f"{line}\n" for line in (*lines, "@enduml"))
 
@@ -95,7 +95,7 @@ def mermaid(system: System) -> str:
         for processor in system.processors:
             if processor.node == node.name:
                 rows = "<br/>".join(slot.element for slot in processor.slots)
-                label = f"processor {processor.name}<br/>{rows}"
+                label = f"{_named(system, processor)}<br/>{rows}"
                 lines.append(f'    processor_{processor.name}["{label}"]')
         lines.append("  end")
     lines += [f'  bus_{bus.name}[("bus {bus.name}")]' for bus in system.buses]
@@ -115,6 +115,12 @@ def mermaid(system: System) -> str:
         for target in message.targets:
             lines.append(f'  bus_{message.bus} -->|"{label}"| {_shape(target.instance)}')
     return "".join(f"{line}\n" for line in lines)
+
+
+def _named(system: System, processor: Processor) -> str:
+    """A processor by its name, and by its core where its node has several."""
+    several = system.node(processor.node).cores > 1
+    return f"processor {processor.name}{f', core {processor.core}' if several else ''}"
 
 
 def _shape(instance: str) -> str:

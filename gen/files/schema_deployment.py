@@ -103,7 +103,8 @@ class NodeForm(Element):
         default=1,
         ge=1,
         le=64,
-        description="How many cores; with several the model is analysed, not generated yet.",
+        description="How many cores; each processor is on one of them, and only values of ports go "
+        "from core to core.",
     )
     database_name: DatabaseName | None = optional(
         "Its name in the databases of its buses (DBC): an identifier of C, of up to 128 "

@@ -308,6 +308,11 @@ class System:
         """All of them, in the order of `record`."""
         return tuple(value for one in self.recorded for value in one.values)
 
+    @property
+    def most_cores(self) -> int:
+        """The number of cores of the node that has the most of them."""
+        return max((node.cores for node in self.nodes), default=1)
+
     def instances_of(self, component: str) -> frozenset[str]:
         """The names of the instances of a component."""
         return self._by_component.get(component, frozenset())

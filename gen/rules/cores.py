@@ -22,14 +22,15 @@ SHARED = "RV-0711"
 def shared_across_cores(system: System) -> Iterator[Diagnostic]:
     """Between cores there are the values of ports alone: a ceiling protects on one core only.
 
-    ``system`` is completed.
+    ``system`` is completed. Of an instance or a bus on several cores that is all that is said:
+    the rest follows from it.
     """
     if all(node.cores == 1 for node in system.nodes):
         return
     for part in programs(system):
         if other_cores(part):
-            divided = list(_divided_instances(part))
-            yield from divided or (*_objects(part), *_drivers(part), *_crossing_values(part))
+            causes = [*_divided_instances(part), *_drivers(part)]
+            yield from causes or (*_objects(part), *_crossing_values(part))
 
 
 def _divided_instances(system: System) -> Iterator[Diagnostic]:

@@ -53,6 +53,12 @@ class Task:
     port: str | None = None  # the same
     after: str | None = None
     """The task or message that releases the driver."""
+    core: int = 1
+
+    @property
+    def place(self) -> tuple[str, int]:
+        """The node and the core of it that the task runs on."""
+        return self.node, self.core
 
     @property
     def sporadic(self) -> bool:
@@ -76,9 +82,6 @@ class Deployment:
         self.nodes = model.section("nodes")
         self.buses = model.section("buses")
         self.instances = model.section("instances")
-        for name, node in self.nodes.maps():
-            if node.number("cores", 1) > 1:
-                raise UnusableError(f"{name} has several cores, and no program is generated")
         self.equipment = Equipment(model, self.component_of)
         self._refuse_calls()
         self.messages = self._messages()
@@ -348,6 +351,7 @@ class Deployment:
             rows=rows,
             bus=self.buses.name(by),
             port=self._releasing(by) if "." in by else None,
+            core=form.number("core", 1),
         )
 
     def _releasing(self, end: str) -> str:
@@ -452,7 +456,8 @@ class Deployment:
 
         One is always as long as a critical section. The main program, processors and supervisors
         share the count of faults. Drivers share a queue with the processors that they serve. A
-        probe shares its result with the main program. Sections of devices may be longer.
+        probe shares its result with the main program. On another core than the first, a task below
+        all others shares the counts with all of them. Sections of devices may be longer.
         """
         least = self.nodes.map(task.node).time("critical_section")
         longest = least
@@ -460,7 +465,7 @@ class Deployment:
             users = [
                 one.priority
                 for one in self.processors
-                if one.node == task.node
+                if one.place == task.place
                 and any(
                     device in self.equipment.called(*row.element.rsplit(".", 1)) for row in one.rows
                 )

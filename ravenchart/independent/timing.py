@@ -239,7 +239,7 @@ class Timing:
             windows.append(self.solved(partial(self.demand, task, job), start))
         late = max(jitter + w - n * task.period for n, w in enumerate(windows))
         self.same("responses", f"{own}_R", late, f"the response time of {task.element}")
-        inside = [t for t in self.deployment.tasks if t.node == task.node and t is not task]
+        inside = [t for t in self.deployment.tasks if t.place == task.place and t is not task]
         above = [
             f"{ada(t.element)}_{'C' if n == 1 else f'C_{n}'}"
             for t in inside
@@ -282,7 +282,7 @@ class Timing:
         total = _work(self.wcets(task), jobs) + self.deployment.blocking(task)
         release = self.deployment.nodes.map(task.node).time("release", 0)
         for other in self.deployment.tasks:
-            if other.node != task.node:
+            if other.place != task.place:
                 continue
             count = -(-(window + self.jitter(other)) // other.period)
             if other is not task and other.priority >= task.priority:

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from ravenchart.failures import Unusable
 from ravenchart.tools import children
 
 from . import held_files, snapshots
@@ -83,14 +84,20 @@ def stolen_time(before: int, after: int) -> int:
 class ControllerProcess:
     """A running controller; its output is read all the time, so it never blocks on it."""
 
-    def __init__(self, executable: Path, trace: Path, core: int, **environment: str | None) -> None:
+    def __init__(
+        self, executable: Path, trace: Path, core: int | range, **environment: str | None
+    ) -> None:
         """Start ``executable`` on ``core``, writing its trace to ``trace``. StartError.
+
+        A controller with tasks on several cores starts on the first of a range of them; it puts
+        each task on its own.
 
         ``environment`` has further variables, such as the address of the bus server; one that is
         None is not set. While the process runs, a monitor finds the file of its snapshots beside
         the executable, and a link to its trace. Where RAVENCHART_MONITOR is None there are no
         snapshots.
         """
+        self._cores = core if isinstance(core, range) else range(core, core + 1)
         told = {"RAVENCHART_CAN_PORT": "0", "RAVENCHART_TRACE": str(trace), **environment}
         given = snapshots.VARIABLE in told
         self.snapshots = None if given else held_files.new_file(executable, snapshots.MARK)
@@ -102,7 +109,7 @@ class ControllerProcess:
         try:
             self._process = children.popen(
                 [executable.absolute()],
-                core=core,
+                core=self._cores[0],
                 env={name: value for name, value in whole.items() if value is not None},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -114,8 +121,7 @@ class ControllerProcess:
         self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._warnings: list[str] = []
         self._real_time = False
-        self._core = core
-        self._stolen = _stolen_ticks(core)
+        self._stolen = self._stolen_ticks()
         self._asked: float | None = None
         assert self._process.stdout is not None
         assert self._process.stderr is not None
@@ -191,9 +197,13 @@ class ControllerProcess:
         self._unlink_snapshots()
         for reader in self._readers:
             reader.join(timeout=1.0)
-        stolen = stolen_time(self._stolen, _stolen_ticks(self._core))
+        stolen = stolen_time(self._stolen, self._stolen_ticks())
         warnings = tuple(self._warnings)
         return Ended(self._process.returncode, killed, self._real_time, warnings, stolen)
+
+    def _stolen_ticks(self) -> int:
+        """The ticks that a hypervisor took of its cores together."""
+        return sum(_stolen_ticks(core) for core in self._cores)
 
     def _unlink_snapshots(self) -> None:
         if self.snapshots is not None:
@@ -221,8 +231,11 @@ class ControllerProcess:
 
 
 @contextmanager
-def separate_cores() -> Iterator[int]:
-    """The controller's core; this thread keeps off it, where there is another one.
+def separate_cores(count: int = 1) -> Iterator[range]:
+    """The cores of a controller, ``count`` of them; this thread keeps off them, if it can.
+
+    Unusable where the machine has fewer: the tasks of a controller with several cores are on the
+    machine's first ones.
 
     It also takes the lowest real-time priority, where it may: else other load of
     the host would look like a bench that falls silent. Processes and threads
@@ -230,14 +243,24 @@ def separate_cores() -> Iterator[int]:
     """
     affinity, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
     parameter = os.sched_getparam(0)
-    core, *others = sorted(affinity)
+    core, *_ = sorted(affinity)
+    if count > 1:
+        core = 0
+        if not affinity.issuperset(range(count)):
+            given = ", ".join(map(str, sorted(affinity)))
+            raise Unusable(
+                f"the controller has tasks on {count} cores: it needs the processors 0 to "
+                f"{count - 1} of this machine, and has {given}"
+            )
+    own = range(core, core + count)
+    others = sorted(affinity.difference(own))
     if others:
         os.sched_setaffinity(0, others)
     with suppress(PermissionError):
         lowest = os.sched_param(os.sched_get_priority_min(os.SCHED_FIFO))
         os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, lowest)
     try:
-        yield core
+        yield own
     finally:
         os.sched_setaffinity(0, affinity)
         with suppress(PermissionError):

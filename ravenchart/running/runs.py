@@ -302,9 +302,10 @@ def _run(
     problems: list[str] = []
     played: ScenarioResult | None = None
     ended = Ended(0, False, False, ())
-    with separate_cores() as core:
+    count = analysis.system.most_cores if analysis else 1
+    with separate_cores(count) as cores:
         try:
-            process = ControllerProcess(executable, trace, core, **hidden)
+            process = ControllerProcess(executable, trace, cores, **hidden)
         except StartError as fault:
             problems.append(str(fault))
         else:

@@ -56,7 +56,7 @@ def started(
     processes: list[ControllerProcess] = []
     ended: list[Ended] = []
     with ExitStack() as stack:
-        core = stack.enter_context(separate_cores())
+        own = stack.enter_context(separate_cores(analysis.system.most_cores))
         if joins_a_server(analysis.system, len(controllers)):
             words = bus_words(analysis, controllers, None)
             bus = server.running("port=0", *words, log=log, beside=first)
@@ -69,7 +69,7 @@ def started(
         else:
             record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name, first))
             stack.callback(_stop, processes, ended, grace)
-            processes.append(ControllerProcess(first, traces[0], core))
+            processes.append(ControllerProcess(first, traces[0], own))
             peer = Peer.connect(processes[0].wait_for_port(), vocabulary.codec, record)
         stack.callback(peer.close)
         yield StartedControllers(

@@ -180,8 +180,7 @@ def own_task(
         Aspect("CPU", plain(core)),
         Aspect("Storage_Size", number(stack)),
     )
-    spec = (silent, SingleTask(name, aspects), Comment("Never ends."))
-    return spec, (SingleTask(name, body=(do("Run_All"),)),)
+    return (silent, SingleTask(name, aspects)), (SingleTask(name, body=(do("Run_All"),)),)
 
 
 class _Reported(NamedTuple):
@@ -250,7 +249,10 @@ def emit_core_reports(system: System, core: int, header: str) -> tuple[Unit, ...
     element = reporter(node, core)
     items = list(_reported(system, core))
     count = "Ravenchart.Event_Count"
-    fields = [RecordComponent("Looks", count, number(0))]
+    fields = [
+        RecordComponent("Looks", count, number(0)),
+        RecordComponent("Seen", "Ravenchart.Nanoseconds", number(0)),
+    ]
     for item in items:
         initial: Expr | None = None
         if item.name == "Faults":
@@ -261,8 +263,8 @@ def emit_core_reports(system: System, core: int, header: str) -> tuple[Unit, ...
     run = (Param("Unused_Release", "in", "Natural"), Param("Unused_Due", "in", TIME))
     spec_task, body_task = own_task("Reporter", core, LOWEST, STACK)
     spec: list[Decl] = [
+        Comment("Looks counts how often the task has looked; Seen is when it began to."),
         RecordDeclaration("Findings", tuple(fields)),
-        Comment("Looks counts how often the task has looked."),
         GenericInstance(
             "Board", BOARDS, arguments(Element_Type=ref("Findings"), Initial=all_else(BOX))
         ),
@@ -285,14 +287,14 @@ def emit_core_reports(system: System, core: int, header: str) -> tuple[Unit, ...
         *spec_task,
     ]
     body: list[Decl] = [
+        Comment("Of the task alone"),
         Object("Looks", count, number(0)),
-        Comment("Of the task alone."),
         Subprogram("Look", run, declarations=tuple(_variables(system)), body=_look(system, items)),
         *body_task,
     ]
     withs = {BOARDS, LOOPS, TIME.parent, ref("System"), ref("Ravenchart.Health")}
     withs |= {processor_package(system, p) for p in system.processors if p.core == core}
-    context = {ref("Ravenchart.Health"), ref(root, "Health_Counts")}
+    context = {ref("Ravenchart.Epochs"), ref(root, "Health_Counts")}
     here = [i for i in system.instances if core_of(system, i.name) == core]
     queued = [i for i in here if queued_regions(i.component)]
     context |= {ref(root, ada_case(i.name)) for i in queued}
@@ -343,6 +345,7 @@ def _look(system: System, items: Sequence[_Reported]) -> tuple[Stmt, ...]:
     body: list[Stmt] = [
         Assign("Looks", call("Ravenchart.Next", ref("Looks"))),
         Assign("Found.Looks", ref("Looks")),
+        do("Ravenchart.Epochs.Since_Start", ref("Found.Seen")),
         *(item.read for item in items),
     ]
     for name, buffer, _ in buffers(system):
@@ -371,35 +374,42 @@ def drained(buffer: Named, item: str, put: Stmt, status: str = "Status") -> Loop
     )
 
 
-def awaiting(core: int) -> Subprogram:
-    """Of the main program: wait until the task of a core has looked, and take what it found."""
-    found = Param("Found", "out", ref(report_unit(core), "Findings"))
-    read = do(ref(report_unit(core), "Board.Read"), ref("Found"))
+def awaiting(cores: Sequence[int]) -> tuple[Subprogram, Subprogram]:
+    """Of the main program: wait until the task of each other core has looked once more."""
     later = OperatorChain("+", (ref("Next"), call("Ada.Real_Time.Milliseconds", _STEP)))
-    looked = OperatorChain(">=", (ref("Found.Looks"), call(SUM, ref("Before"), number(2))))
-    return Subprogram(
-        f"Await_Core_{core}",
-        (found,),
-        declarations=(
-            UseType(TIME),
-            UseType("Ravenchart.Event_Count"),
-            Object("Next", TIME, ref("Ada.Real_Time.Clock")),
-            Object("Before", "Ravenchart.Event_Count"),
-        ),
-        body=(
+    body: list[Stmt] = []
+    for core in cores:
+        found = ref(found_on(core))
+        read = do(ref(report_unit(core), "Board.Read"), found)
+        enough = OperatorChain(">=", (ref(found, "Looks"), call(SUM, ref("Before"), number(2))))
+        waiting = (
+            IfStatement(((enough, (ExitStatement(),)),)),
+            Assign("Next", later),
+            DelayUntil(ref("Next")),
             read,
-            Assign("Before", ref("Found.Looks")),
-            Loop(
-                ForLoop("Unused", up_to(plain(LOOKS))),
-                (
-                    IfStatement(((looked, (ExitStatement(),)),)),
-                    Assign("Next", later),
-                    DelayUntil(ref("Next")),
-                    read,
-                ),
+        )
+        body += [read, Assign("Before", ref(found, "Looks"))]
+        body.append(Loop(ForLoop("Unused", up_to(plain(LOOKS))), waiting))
+    return (
+        Subprogram("Await_Looks"),
+        Subprogram(
+            "Await_Looks",
+            declarations=(
+                UseType(TIME),
+                UseType("Ravenchart.Event_Count"),
+                *copies_of(cores),
+                Object("Next", TIME, ref("Ada.Real_Time.Clock")),
+                Object("Before", "Ravenchart.Event_Count"),
             ),
+            body=tuple(body),
         ),
     )
+
+
+def copies_of(cores: Sequence[int]) -> Iterator[Decl]:
+    """The main program's copies of what was found on these cores."""
+    for core in cores:
+        yield Object(found_on(core), ref(report_unit(core), "Findings"))
 
 
 _STEP = number(DRAIN_PERIOD // 1_000_000)

@@ -247,10 +247,10 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     if processor.on_overrun:
         shared += arguments(On_Executed=ref("On_Executed"))
         items += _budgets(processor)
-    items.append(Comment(f"[{processor.name}]"))
     named = arguments(Name=StringLiteral(processor.name))
     own: tuple[Decl, ...] = ()
     if processor.core == MAIN_CORE:
+        items.append(Comment(f"[{processor.name}]"))
         items.append(GenericInstance("Processor", generic, (*named, *args, *shared)))
         items += _checks(processor, offset)
         withs = {generic, ref("System"), ref(root, CERTIFICATE)}
@@ -305,7 +305,10 @@ def _on_other_core(
     spec, body = own_task(
         "Processor", processor.core, values["Task_Priority"], processor.stack_bytes
     )
+    if processor.on_overrun:  # the body compares
+        found.append(UseType("Ravenchart.Nanoseconds"))
     found += [
+        Comment(f"[{processor.name}]"),
         GenericInstance("Releases", measured, releases),
         GenericInstance("Run_All", loop, looped, kind="procedure"),
         *spec,

@@ -58,6 +58,7 @@ from ravenchart.gen.model.system import Processor, System
 from .cores import (
     SUM,
     awaiting,
+    copies_of,
     drained,
     found_on,
     of_processor,
@@ -79,11 +80,17 @@ def emit_reports(system: System, header: str) -> list[Unit]:
         bodies.append(_drain(system))
     spec += [Subprogram("Put_All"), Comment("Hand the statistics of all processors to the host.")]
     away = other_cores(system)
-    bodies += [awaiting(core) for core in away]
+    if away:
+        await_spec, await_body = awaiting(away)
+        spec += [await_spec, Comment("Wait until each other core has handed over what it has.")]
+        bodies.append(await_body)
     bodies += [_report(system, p) for p in system.processors]
     steps: list[Stmt] = [do("Ravenchart.Hosts.Put_Now")]
-    steps += [do(f"Await_Core_{core}", ref(found_on(core))) for core in away]
-    steps += [_reported(p) for p in system.processors]
+    steps += [do(ref(report_unit(core), "Board.Read"), ref(found_on(core))) for core in away]
+    for core in (MAIN_CORE, *away):
+        if core != MAIN_CORE:
+            steps.append(do("Ravenchart.Hosts.Put_Other_Core", ref(found_on(core), "Seen")))
+        steps += [_reported(p) for p in system.processors if p.core == core]
     steps += _queues(system)
     steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
     steps += [_with_faults(core) for core in away]
@@ -101,8 +108,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     )
     declarations: list[Decl] = [Object("Faults", "Ravenchart.Health.Fault_Counts")]
     declarations += [Object("Queue_Fill", FILL) for _ in _of_queues(root, system)][:1]
-    for core in away:
-        declarations.append(Object(found_on(core), ref(report_unit(core), "Findings")))
+    declarations += copies_of(away)
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
         for buffer, label in _buffers(system):
@@ -310,6 +316,7 @@ def emit_main(system: System, header: str) -> Unit:
         body.append(Loop(ForLoop("Unused", up_to(plain(steps))), (*drain, *wait)))
     body += [
         *safe_state(system),
+        *((do(ref(root, "Reports.Await_Looks")),) if other_cores(system) else ()),
         *drain,
         do(ref(root, "Reports.Put_All")),
         do("Ravenchart.Hosts.Finish", Success=ref("Started") if begins else TRUE),

@@ -137,7 +137,10 @@ def trace_json(system: System) -> str:
         if item.unit is not None:
             row["unit"] = item.unit
         rows.append(row)
-    document = {"system": system.name, "digest": system.digest, "elements": rows}
+    document: dict[str, object] = {"system": system.name, "digest": system.digest}
+    if system.most_cores > 1:
+        document["cores"] = system.most_cores
+    document["elements"] = rows
     return json.dumps(document, indent=1, ensure_ascii=True) + "\n"
 
 
