@@ -89,7 +89,7 @@ class Target:
 
     def reasons(self) -> dict[str, str]:
         """Why something of it may be outside SPARK."""
-        own = outside_spark.reasons_for_model(self.folder) if self.folder else {}
+        own = outside_spark.reasons_for_model(self.folder, cores=2) if self.folder else {}
         return {**outside_spark.reasons_for_target(OUTSIDE, self.name), **own}
 
 

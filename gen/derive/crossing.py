@@ -3,10 +3,9 @@
 
 """Values that go from one core of a node to another: no protected object holds them.
 
-A ceiling protects an object on one core only. So the mailbox of an input port whose sender runs
-on another core is made of atomic objects alone, with one task on each side (see
-`Ravenchart.Crossing_Boards` and `Ravenchart.Crossing_Queues`), and what the main program reports
-of another core comes to it in the same way.
+A ceiling protects an object on one core only. So an input port whose sender runs on another core
+has a mailbox of atomic objects, with one task on each side: `Ravenchart.Crossing_Samples` or
+`Ravenchart.Crossing_Queues`. The reports of another core come to the main program in the same way.
 """
 
 from __future__ import annotations

@@ -33,13 +33,13 @@ is
    type Numbers is array (Side, Side) of Number;
 
    type Board is record
-      --  What both tasks access.
+      --  Both tasks access these.
       Latest  : Side    := 0;
       Reading : Side    := 0;
       Newest  : Sides   := (others => 0);
       Slots   : Numbers := (others => (others => 0));
 
-      --  What each task knows.
+      --  Each task knows its own.
       Writer      : Writer_Place := Idle;
       Writer_Pair : Side         := 0;
       Writer_Half : Side         := 0;
@@ -47,7 +47,7 @@ is
       Reader_Pair : Side         := 0;
       Reader_Half : Side         := 0;
 
-      --  What nobody needs to know but the proof.
+      --  Only the proof needs these.
       Written : Number := 0;
       --  The value that is written, or was written last.
       Shown   : Number := 0;
@@ -78,8 +78,8 @@ is
        and then (for all P in Side =>
                    (for all H in Side => B.Slots (P, H) <= B.Written))
 
-       --  The writer fills the half that is not shown, of a pair that nobody
-       --  reads, or else of the one that is shown.
+       --  The writer fills the half that is not shown. It has chosen a pair
+       --  that was not announced, or else the pair is the one that is shown.
        and then (if B.Writer in Avoided | Filling
                  then B.Writer_Half /= B.Newest (B.Writer_Pair))
        and then (if B.Writer in Avoided | Filling
@@ -100,7 +100,7 @@ is
        and then (if B.Reader in Announced | Copying
                  then B.Reading = B.Reader_Pair)
 
-       --  What is shown is never older than what was shown or read before.
+       --  A value shown is never older than one shown or read before.
        and then At_Latest (B) >= B.Shown
        and then At_Latest (B) >= B.Got
        and then (if B.Reader in Looked | Announced

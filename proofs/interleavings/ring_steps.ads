@@ -28,16 +28,16 @@ is
    type Numbers is array (Place_Number) of Number;
 
    type Ring (Capacity : Capacity_Type) is record
-      --  What both tasks access.
+      --  Both tasks access these.
       Head  : Place_Number := 0;
       Tail  : Place_Number := 0;
       Slots : Numbers      := (others => 0);
 
-      --  What each task knows.
+      --  Each task knows its own.
       Producer : Producer_Place := Idle;
       Consumer : Consumer_Place := Idle;
 
-      --  What nobody needs to know but the proof.
+      --  Only the proof needs these.
       Put   : Number := 0;
       --  How many elements were put: the number of the next one.
       Taken : Number := 0;

@@ -60,7 +60,7 @@ def execute(options: argparse.Namespace) -> int:
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
     made = programs.programs_of(checked)
-    reasons = outside_spark.reasons_for_model(checked.folder)
+    reasons = outside_spark.reasons_for_model(checked.folder, cores=checked.system.most_cores)
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:

@@ -112,7 +112,7 @@ def gather(
         chosen,
         nodes,
         runtime,
-        tuple(outside_spark.reasons_for_model(folder).items()),
+        tuple(outside_spark.reasons_for_model(folder, cores=checked.system.most_cores).items()),
         reasons,
         why,
         sources,

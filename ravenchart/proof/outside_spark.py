@@ -24,15 +24,23 @@ from .spark_results import Outside
 FILE = "outside_spark.toml"
 """Its name, beside a model."""
 
+OF_CORES = {
+    "Ravenchart.Crossing_Boards.Slots": "ASM-023",
+    "Ravenchart.Crossing_Queues.Slots": "ASM-023",
+    "Ravenchart.Shared_Slots": "ASM-023",
+}
+"""Parts of the runtime in each program for several cores, with the entry of assumptions.md."""
+
 
 class WrongList(Failure):
     """The file is no list of names with reasons; the text says where and why."""
 
 
-def reasons_for_model(folder: Path) -> dict[str, str]:
-    """Name to reason for the models in ``folder``; empty where there is no file."""
+def reasons_for_model(folder: Path, *, cores: int) -> dict[str, str]:
+    """Name to reason for a model in ``folder`` whose largest node has at most so many cores."""
     path = folder / FILE
-    return _reasons(path, _table(path)) if path.is_file() else {}
+    own = _reasons(path, _table(path)) if path.is_file() else {}
+    return {**(OF_CORES if cores > 1 else {}), **own}
 
 
 def reasons_for_target(path: Path, target: str) -> dict[str, str]:
@@ -69,8 +77,9 @@ def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outsi
 
 
 def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
-    """Names of the list that cover nothing."""
-    return tuple(name for name in reasons if not any(_covers(name, o) for o in found))
+    """Names of the list that cover nothing; those of the runtime need not."""
+    asked = (name for name in reasons if name not in OF_CORES)
+    return tuple(name for name in asked if not any(_covers(name, o) for o in found))
 
 
 def agree(found: Sequence[Outside], reasons: Mapping[str, str]) -> bool:
@@ -80,7 +89,7 @@ def agree(found: Sequence[Outside], reasons: Mapping[str, str]) -> bool:
 
 def lines(found: Sequence[Outside], reasons: Mapping[str, str]) -> list[str]:
     """Each name of the list with its reason, then what is refused, then what covers nothing."""
-    used = [name for name in reasons if name not in idle(found, reasons)]
+    used = [name for name in reasons if any(_covers(name, o) for o in found)]
     return [
         *(f"outside SPARK: {name} ({reasons[name]})" for name in used),
         *(

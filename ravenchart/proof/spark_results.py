@@ -161,7 +161,16 @@ def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
 
 def _not_proved(entity: Mapping[str, Any]) -> Outside:
     at = entity["sloc"][0]
-    return Outside(entity["name"], f"{at['file']}:{at['line']}")
+    return Outside(_unit_name(entity["name"], at["file"]), f"{at['file']}:{at['line']}")
+
+
+def _unit_name(name: str, file: str) -> str:
+    """The name of an entity; in an instance of the runtime, that in the generic unit."""
+    runtime = "ravenchart-"
+    if not file.startswith(runtime) or name.lower().startswith("ravenchart."):
+        return name
+    unit = file.rpartition(".")[0].replace("-", ".").title()
+    return f"{unit}.{name.rpartition('.')[2]}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,9 @@
 --  core reads: the four-slot mechanism (H. R. Simpson, Four-slot fully
 --  asynchronous communication mechanism, IEE Proceedings 137 E, 1990).
 --
---  Guarantees   the reader gets a whole value, never a mixture: the last one
---               written before Read began, or a later one; never one older
---               than it has got before. proofs/interleavings proves it over
---               every interleaving
+--  Guarantees   the reader gets a whole value: the last one written before
+--               Read began, or a later one, and none older than before.
+--               proofs/interleavings proves it over every interleaving
 --  Tasking      one task writes, one task reads; neither ever waits
 --  Timing       the time to copy one Element_Type, and four atomic accesses
 --  Analysis     no shared object: no ceiling, no blocking

@@ -1,7 +1,7 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the task of a periodic processor does: wait until each release is due,
+--  The work of a periodic processor's task: wait until each release is due,
 --  and run it. Periodic_Processors has a task around it. A program for several
 --  cores declares the task itself, since its CPU has to be static (RM D.7,
 --  No_Dynamic_CPU_Assignment).

@@ -14,7 +14,7 @@
 generic
    type Element_Type is private;
    Initial : Element_Type;
-   --  What each place holds before the first Write.
+   --  The value of each place before the first Write.
    Last : Natural;
    --  The places are 0 .. Last.
 package Ravenchart.Shared_Slots

@@ -1,8 +1,8 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  What the task of a sporadic processor does: wait for each release, and run
---  it; as Periodic_Loops.
+--  The work of a sporadic processor's task: wait for each release, and run it;
+--  as Periodic_Loops.
 --
 --  Guarantees   two releases are never due closer than Minimum_Separation; a
 --               release that comes earlier is due when the separation is over

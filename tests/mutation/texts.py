@@ -58,7 +58,7 @@ class WrittenBody:
 def written_bodies(text: str) -> list[WrittenBody]:
     """Every subprogram that has a body in this text, in order."""
     found = []
-    for match in re.finditer(r"^( *)(?:procedure|function) (\w+)", text, re.M):
+    for match in re.finditer(r"^( *)(?:procedure|function) ([\w.]+)", text, re.M):
         one = _block(text, match) or _expression(text, match)
         if one is not None:
             found.append(one)
