@@ -54,6 +54,7 @@ WHERE: Mapping[str, Touched] = {
     "ASM-017": _never,  # the simulated runtime
     "ASM-018": lambda system, _: bool(types_with_registers(system)),
     "ASM-019": lambda system, _: has_lifecycle(system),
+    "ASM-023": lambda system, _: system.most_cores > 1,
 }
 """Where an entry is in use; every other one always is."""
 

@@ -21,7 +21,7 @@ from ravenchart.paths import ROOT
 from ravenchart.tools import kept
 
 from . import code
-from .spark_results import Entity, Outside, Results
+from .spark_results import Entity, Outside, Results, named_outside
 
 if TYPE_CHECKING:
     from .proving import ProofTask
@@ -72,7 +72,7 @@ def load(key: str) -> Results | None:
 
 def _outside(name: str, location: str) -> Outside:
     """With the file alone: comments that were edited since may have moved the line."""
-    return Outside(name, location.partition(":")[0])
+    return named_outside(name, location.partition(":")[0])
 
 
 def store(key: str, results: Results) -> None:

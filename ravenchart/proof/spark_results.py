@@ -161,16 +161,16 @@ def _outside(unit: dict[str, Any]) -> Iterator[Outside]:
 
 def _not_proved(entity: Mapping[str, Any]) -> Outside:
     at = entity["sloc"][0]
-    return Outside(_unit_name(entity["name"], at["file"]), f"{at['file']}:{at['line']}")
+    return named_outside(entity["name"], f"{at['file']}:{at['line']}")
 
 
-def _unit_name(name: str, file: str) -> str:
-    """The name of an entity; in an instance of the runtime, that in the generic unit."""
-    runtime = "ravenchart-"
-    if not file.startswith(runtime) or name.lower().startswith("ravenchart."):
-        return name
-    unit = file.rpartition(".")[0].replace("-", ".").title()
-    return f"{unit}.{name.rpartition('.')[2]}"
+def named_outside(name: str, location: str) -> Outside:
+    """An entity by its name; in an instance of the runtime, by that in the generic unit."""
+    file = location.partition(":")[0]
+    if file.startswith("ravenchart-") and not name.lower().startswith("ravenchart."):
+        unit = file.rpartition(".")[0].replace("-", ".").title()
+        name = f"{unit}.{name.rpartition('.')[2]}"
+    return Outside(name, location)
 
 
 @dataclass(frozen=True, slots=True)
