@@ -20,8 +20,9 @@ is
    type Findings is record
       Looks           : Ravenchart.Event_Count := 0;
       Seen            : Ravenchart.Nanoseconds := 0;
-      Of_Vision       : Vision.Releases.Monitor.Statistics;
-      Of_Eye_Tracking : Ravenchart.Queueing.Fill;
+      Of_Vision       : Vision.Releases.Monitor.Statistics :=
+        (others => <>);
+      Of_Eye_Tracking : Ravenchart.Queueing.Fill := (others => <>);
       Faults          : Ravenchart.Health.Fault_Counts := (others => 0);
       Trace_Lost      : Ravenchart.Event_Count := 0;
       Values_Lost     : Ravenchart.Event_Count := 0;

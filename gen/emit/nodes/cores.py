@@ -254,9 +254,7 @@ def emit_core_reports(system: System, core: int, header: str) -> tuple[Unit, ...
         RecordComponent("Seen", "Ravenchart.Nanoseconds", number(0)),
     ]
     for item in items:
-        initial: Expr | None = None
-        if item.name == "Faults":
-            initial = all_else(number(0))
+        initial = all_else(number(0) if item.name == "Faults" else BOX)
         fields.append(RecordComponent(item.name, item.type, initial))
     lost = [f"{name}_Lost" for name, _, _ in buffers(system)]
     fields += [RecordComponent(name, count, number(0)) for name in lost]
