@@ -111,7 +111,7 @@ class Noted:
 
     def _call(self, call: Do, name: DottedName, at: Place) -> Records:
         text = name.text
-        if text.endswith("Trace.Buffer.Note") or text.endswith("Faults.Report"):
+        if text.endswith(("Faults.Report", "Buffer.Note")):  # of the trace of any core
             return Records(1)
         if text.endswith("Values.Note"):
             return Records(0, 1)
