@@ -262,9 +262,14 @@ def read_trace(lines: Iterable[str], trace_map: TraceMap, file: str = "trace") -
         except ValueError as fault:
             raise TraceError(f"{file}:{number}: error: {fault}") from None
     if trace_map.cores > 1:
-        seen.records.sort(key=lambda record: record.time)
-        seen.values.sort(key=lambda record: record.time)
+        _put_in_order(seen)
     return seen
+
+
+def _put_in_order(seen: Observation) -> None:
+    """Put what several controllers or cores have noted in the order of its times."""
+    for noted in (seen.records, seen.values):
+        noted.sort(key=lambda record: record.time)
 
 
 def of_model(seen: Observation, digest: str, file: str = "trace") -> None:
@@ -304,8 +309,7 @@ def merged(parts: Mapping[str, Observation]) -> Observation:
         whole.ready = max(whole.ready, Ns(late))
         whole.digest = part.digest
         whole.map = replace(part.map, elements=elements)
-    whole.records.sort(key=lambda record: record.time)
-    whole.values.sort(key=lambda record: record.time)
+    _put_in_order(whole)
     return whole
 
 

@@ -39,7 +39,7 @@ from ravenchart.gen.model.statechart import DONE
 from ravenchart.gen.model.system import Processor, Shutdown, Slot, System, Work
 from ravenchart.gen.origins import Origin
 
-from .completion import completed
+from .completion import completed, on_one_core
 from .distribution import as_one
 
 REPLIES = ""
@@ -59,12 +59,10 @@ def alone(system: System, name: str) -> System:
 
     KeyError where there is no such instance; `hindrance` must be None for its component.
     """
-    system = as_one(system)
+    system = on_one_core(as_one(system))
     instance = system.instance(name)
     component = _with_stubs(instance.component)
-    processors = tuple(
-        replace(_only(processor, instance.name), core=1) for processor in system.processors
-    )
+    processors = tuple(_only(processor, instance.name) for processor in system.processors)
     processors = tuple(processor for processor in processors if processor.slots)
     processors = _with_rows(processors, instance, component)
     made = replace(
@@ -72,7 +70,6 @@ def alone(system: System, name: str) -> System:
         components=(component,),
         instances=(replace(instance, component=component, delegations=()),),
         processors=processors,
-        nodes=tuple(replace(node, cores=1) for node in system.nodes),
         buses=(),
         connections=(),
         messages=(),

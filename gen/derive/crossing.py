@@ -38,7 +38,7 @@ class Crossing:
     @property
     def element(self) -> str:
         """``instance.port``"""
-        return f"{self.target.instance}.{self.target.name}"
+        return str(self.target)
 
 
 def reporter(node: Node, core: int) -> str:
@@ -67,9 +67,14 @@ def crossings(system: System) -> tuple[Crossing, ...]:
     return tuple(_crossings(system)) if other_cores(system) else ()
 
 
-def crossing_at(system: System, end: End) -> Crossing | None:
-    """The one that ends in a port, if one does."""
-    return next((one for one in crossings(system) if one.target == end), None)
+def crosses(system: System, end: End) -> bool:
+    """Whether values for an end come to an input port from another core.
+
+    ``system`` is completed: the mailboxes of all other input ports are among its objects.
+    """
+    inputs = system.instance(end.instance).component.inputs()
+    is_port = any(port.name == end.name for port in inputs)
+    return is_port and not system.has_object(f"{end}.mailbox")
 
 
 def senders_to(system: System, end: End) -> tuple[str, ...]:

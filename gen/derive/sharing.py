@@ -42,7 +42,7 @@ class _Sharing:
     system: System
     priorities: dict[str, int]
     cores: dict[str, int]
-    """Of each task that has one of its own."""
+    """Of each task, and of what runs below all of them."""
     crossing: frozenset[str]
     """The ports whose values come from another core, by ``instance.port``."""
 
@@ -50,8 +50,8 @@ class _Sharing:
         """The object with these users, each once, and the ceiling that they need."""
         once = tuple(dict.fromkeys(users))
         node = self.system.nodes[0]
-        ceiling = max((self.priorities.get(user, 0) for user in once), default=0)
-        core = next((self.cores[user] for user in once if user in self.cores), MAIN_CORE)
+        ceiling = max((self.priorities[user] for user in once), default=0)
+        core = next((self.cores[user] for user in once), MAIN_CORE)
         return SharedObject(element, node.name, once, ceiling, node.critical_section, core=core)
 
     def made_on_each(self, element: str, users: Iterable[str]) -> SharedObject:
@@ -268,14 +268,15 @@ def on_core(name: str, core: int) -> str:
 def objects_on_node(system: System) -> tuple[SharedObject, ...]:
     """The protected objects of one node. The users of `health` and `trace` are all processors."""
     tasks = system.tasks
+    away = other_cores(system)
+    lowest = {MAIN: MAIN_CORE} | {reporter(system.nodes[0], core): core for core in away}
     sharing = _Sharing(
         system,
-        {task.element: task.priority for task in tasks} | {MAIN: 0},
-        {task.element: task.core for task in tasks},
+        {task.element: task.priority for task in tasks} | dict.fromkeys(lowest, 0),
+        {task.element: task.core for task in tasks} | lowest,
         frozenset(one.element for one in crossings(system)),
     )
     objects: list[SharedObject] = []
-    away = other_cores(system)
     for instance in system.instances:
         objects.extend(sharing.of_instance(instance))
     objects.extend(sharing.devices())

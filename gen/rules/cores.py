@@ -12,7 +12,6 @@ from ravenchart.gen.derive.crossing import MAIN_CORE, Crossing, crossings, other
 from ravenchart.gen.derive.sharing import MAIN
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.component import PortKind
-from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System
 
@@ -36,20 +35,15 @@ def shared_across_cores(system: System) -> Iterator[Diagnostic]:
 def _divided_instances(system: System) -> Iterator[Diagnostic]:
     """All rows of an instance run on one core."""
     for instance in system.instances:
-        for diagnostic in _divided(system, instance):
-            yield diagnostic
-            break
-
-
-def _divided(system: System, instance: Instance) -> Iterator[Diagnostic]:
-    first, *others = system.slots_of(instance.name)
-    home = system.processor_of(first.element)
-    for slot in others:
-        processor = system.processor_of(slot.element)
-        if processor.core != home.core:
+        first, *others = system.slots_of(instance.name)
+        home = system.processor_of(first.element).core
+        homes = ((slot, system.processor_of(slot.element)) for slot in others)
+        away = next(((slot, other) for slot, other in homes if other.core != home), None)
+        if away is not None:
+            slot, processor = away
             text = (
                 f"{instance.name} runs on two cores: {slot.name} on core {processor.core}, "
-                f"{first.name} on core {home.core}"
+                f"{first.name} on core {home}"
             )
             hint = "put all rows of an instance on one core"
             yield error(SHARED, processor.origin, text, hint=hint)

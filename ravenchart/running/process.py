@@ -243,16 +243,14 @@ def separate_cores(count: int = 1) -> Iterator[range]:
     """
     affinity, policy = os.sched_getaffinity(0), os.sched_getscheduler(0)
     parameter = os.sched_getparam(0)
-    core, *_ = sorted(affinity)
-    if count > 1:
-        core = 0
-        if not affinity.issuperset(range(count)):
-            given = ", ".join(map(str, sorted(affinity)))
-            raise Unusable(
-                f"the controller has tasks on {count} cores: it needs the processors 0 to "
-                f"{count - 1} of this machine, and has {given}"
-            )
+    core = min(affinity) if count == 1 else 0
     own = range(core, core + count)
+    if not affinity.issuperset(own):
+        given = ", ".join(map(str, sorted(affinity)))
+        raise Unusable(
+            f"the controller has tasks on {count} cores: it needs the processors 0 to "
+            f"{count - 1} of this machine, and has {given}"
+        )
     others = sorted(affinity.difference(own))
     if others:
         os.sched_setaffinity(0, others)

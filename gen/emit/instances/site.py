@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.derive.crossing import crossing_at
+from ravenchart.gen.derive.crossing import crosses
 from ravenchart.gen.emit.ada.expressions import Expr
 from ravenchart.gen.emit.ada.named import DottedName, Named
 from ravenchart.gen.emit.ada.naming import component_name, priority
@@ -77,7 +77,7 @@ class Site:
 
     def _crosses(self, port: Port) -> bool:
         """Whether the values of an input port come from another core."""
-        return crossing_at(self.system, End(self.instance.name, port.name)) is not None
+        return crosses(self.system, End(self.instance.name, port.name))
 
     def _mailbox(self, port: Port) -> DottedName:
         return mailbox_of(self.system, End(self.instance.name, port.name))

@@ -58,6 +58,7 @@ from ravenchart.gen.model.system import Processor, System
 from .cores import (
     SUM,
     awaiting,
+    buffers,
     copies_of,
     drained,
     found_on,
@@ -111,12 +112,12 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     declarations += copies_of(away)
     if traced(system):
         declarations.append(Object("Lost", "Ravenchart.Event_Count"))
-        for buffer, label in _buffers(system):
+        for what, buffer, _ in buffers(system):
             steps.append(Assign("Lost", ref(buffer, "Lost")))
             for core in away:
-                there = ref(found_on(core), f"{label.capitalize()}_Lost")
+                there = ref(found_on(core), f"{what}_Lost")
                 steps.append(Assign("Lost", call(SUM, ref("Lost"), there)))
-            word = StringLiteral(label)
+            word = StringLiteral(what.lower())
             steps.append(do("Ravenchart.Hosts.Put_Lost", word, ref("Lost")))
     for bus in system.buses:
         counters = f"{ada_case(bus.name)}_Counters"
@@ -195,15 +196,6 @@ def _of_queues(root: str, system: System) -> Iterator[DottedName]:
             yield from (ref(root, ada_case(instance.name)), ref("Ravenchart.Queueing"))
 
 
-TRACE, VALUES = ref("Trace.Buffer"), ref(UNIT, "Values")
-
-
-def _buffers(system: System) -> tuple[tuple[DottedName, str], ...]:
-    """The buffers that hold records until the host has them, with their names in the report."""
-    values = ((VALUES, "values"),) if recording(system) else ()
-    return ((TRACE, "trace"), *values)
-
-
 def _of_values(root: str) -> set[DottedName]:
     return {ref(root, UNIT), ref("Ravenchart.Hosts.Value_Lines"), ref("Ravenchart.Recorded_Values")}
 
@@ -217,11 +209,11 @@ def _drain(system: System) -> Subprogram:
     put_trace = do("Ravenchart.Hosts.Put_Trace", ref("Item"))
     put_value = do("Ravenchart.Hosts.Value_Lines.Put", ref("Value"))
     away = [ref(report_unit(core)) for core in other_cores(system)]
-    body = [drained(TRACE, "Item", put_trace)]
+    body = [drained(ref("Trace.Buffer"), "Item", put_trace)]
     body += [drained(ref(unit, "Trace_Out"), "Item", put_trace) for unit in away]
     if recording(system):
         declarations.insert(2, Object("Value", "Ravenchart.Recorded_Values.Value_Record"))
-        body.append(drained(VALUES, "Value", put_value))
+        body.append(drained(ref(UNIT, "Values"), "Value", put_value))
         body += [drained(ref(unit, "Values_Out"), "Value", put_value) for unit in away]
     return Subprogram("Drain_Trace", declarations=tuple(declarations), body=tuple(body))
 

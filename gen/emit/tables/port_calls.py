@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from ravenchart.gen.derive.crossing import crossing_at
+from ravenchart.gen.derive.crossing import crosses
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, constant_name
 from ravenchart.gen.model.instances import End
@@ -17,13 +17,13 @@ CROSSINGS = "Crossings"
 
 def put_of(system: System, end: End) -> DottedName:
     """The procedure that puts a value into an input port, with the unit that has it."""
-    if crossing_at(system, end) is None:
-        return ref(ada_case(end.instance), f"Put_{ada_case(end.name)}")
-    return ref(CROSSINGS, f"Put_{constant_name(str(end))}")
+    if crosses(system, end):
+        return ref(CROSSINGS, f"Put_{constant_name(str(end))}")
+    return ref(ada_case(end.instance), f"Put_{ada_case(end.name)}")
 
 
 def mailbox_of(system: System, end: End) -> DottedName:
     """The package of the mailbox, as the instance of the port sees it."""
-    if crossing_at(system, end) is None:
-        return ref(f"{ada_case(end.name)}_Mailbox")
-    return ref(CROSSINGS, constant_name(str(end)))
+    if crosses(system, end):
+        return ref(CROSSINGS, constant_name(str(end)))
+    return ref(f"{ada_case(end.name)}_Mailbox")
