@@ -37,6 +37,10 @@ generic
    --  The acceptance filter: frames it refuses are not received.
    Setting : Bus_Setting;
    --  The configuration of the bus.
+   Bus_Number : Bus_Place := 1;
+   Bus_Name : String := "";
+   --  In upper case. Variables of the environment that end in it are for this
+   --  bus alone.
 package Ravenchart.Can.Controllers
   with
     SPARK_Mode,
@@ -48,10 +52,12 @@ package Ravenchart.Can.Controllers
 is
    pragma Assert
      (Driver_Priority <= Transmit_Ceiling
-      and then Driver_Priority <= Receive_Ceiling);
+      and then Driver_Priority <= Receive_Ceiling
+      and then Bus_Name'Length <= 64);
 
    Given_Priority : constant System.Priority := Driver_Priority;
    Given_Setting  : constant Bus_Setting := Setting;
+   Given_Number   : constant Bus_Place := Bus_Number;
    --  The controller as it runs, for comparison with a timing certificate.
 
    procedure Send (F : Any_Frames.Any_Frame; Status : out Send_Status)

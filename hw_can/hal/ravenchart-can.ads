@@ -128,6 +128,9 @@ is
    --  phase, 0 where no frame switches. Takes_Fd: the bus carries CAN FD
    --  frames. Recovery: the way out of bus-off.
 
+   subtype Bus_Place is Positive range 1 .. 8;
+   --  A bus of a node, by its place among them.
+
    type Send_Status is (Queued, Rejected_Full);
    --  The outcome of handing a frame to a controller.
 

@@ -6,11 +6,21 @@
 from __future__ import annotations
 
 from ravenchart.gen.emit.ada.declarations import Decl, UseType
-from ravenchart.gen.emit.ada.expressions import FALSE, TRUE, Expr, both, equal, number, record
+from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
+    TRUE,
+    Expr,
+    StringLiteral,
+    both,
+    equal,
+    number,
+    record,
+)
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.statements import Pragma
 from ravenchart.gen.emit.certificate.certified import agrees, driver_element, fact
 from ravenchart.gen.model.buses import Bus
+from ravenchart.gen.model.system import System
 
 
 def controller_checks(bus: Bus) -> list[Decl]:
@@ -31,6 +41,15 @@ def _rates(bus: Bus) -> dict[str, Expr]:
     return {
         "Bit_Rate": fact(bus.name, "Bit_Rate"),
         "Data_Rate": fact(bus.name, "Data_Rate") if bus.data_rate else number(0),
+    }
+
+
+def bus_place(system: System, bus: Bus) -> dict[str, Expr]:
+    """The place of a bus among those of the program, and its name in the environment."""
+    names = [one.name for one in system.buses]
+    return {
+        "Bus_Number": number(names.index(bus.name) + 1),
+        "Bus_Name": StringLiteral(bus.name.upper()),
     }
 
 

@@ -53,7 +53,7 @@ from ravenchart.gen.model.system import System, Work
 from . import authentication
 from .authentication import AUTHENTICATION
 from .codecs import codec_name, words_of
-from .controllers import controller_checks, controller_setting
+from .controllers import bus_place, controller_checks, controller_setting
 from .layout_tables import ANY, FD, LAYOUTS, is_framed, is_received
 from .protection import (
     PROTECTION,
@@ -152,6 +152,7 @@ def emit_bus(system: System, bus: Bus, header: str) -> list[Unit]:
                 Stack_Bytes=number(DRIVER_STACK),
                 Accepts=ref("Accepts"),
                 Setting=controller_setting(bus),
+                **bus_place(system, bus),
             ),
         ),
     ]

@@ -21,6 +21,7 @@ from ravenchart.gen.emit.ada.declarations import (
 )
 from ravenchart.gen.emit.ada.expressions import (
     TRUE,
+    Expr,
     Indexed,
     OperatorChain,
     Prefix,
@@ -95,12 +96,7 @@ def emit_reports(system: System, header: str) -> list[Unit]:
     steps += _queues(system)
     steps.append(do("Health_Counts.Counters.Read", ref("Faults")))
     steps += [_with_faults(core) for core in away]
-    for bus in system.buses:
-        log = f"{ada_case(bus.name)}_Faults"
-        steps.append(do(ref(ada_case(bus.name), "Controller.Read_Faults"), ref(log)))
-        for kind, count in (("Error_Passive", "Passive_Entries"), ("Bus_Off", "Off_Entries")):
-            fault = Indexed("Faults", ref("Ravenchart.Health", f"Can_{kind}"))
-            steps.append(Assign(fault, ref(log, count)))
+    steps += _faults_of_buses(system)
     steps.append(
         Loop(
             ForLoop("Kind", "Ravenchart.Health.Fault_Kind"),
@@ -168,6 +164,19 @@ def _context(system: System, root: str) -> set[DottedName]:
         context |= {ref(root, "Trace"), ref("Ravenchart.Queueing"), ref("Ravenchart.Traces")}
         context |= _of_values(root) if recording(system) else set()
     return context
+
+
+def _faults_of_buses(system: System) -> Iterator[Stmt]:
+    """Count the faults of the controllers of all buses."""
+    for bus in system.buses:
+        log = f"{ada_case(bus.name)}_Faults"
+        yield do(ref(ada_case(bus.name), "Controller.Read_Faults"), ref(log))
+        for kind, count in (("Error_Passive", "Passive_Entries"), ("Bus_Off", "Off_Entries")):
+            fault = Indexed("Faults", ref("Ravenchart.Health", f"Can_{kind}"))
+            found: Expr = ref(log, count)
+            if bus != system.buses[0]:
+                found = call(SUM, fault, found)
+            yield Assign(fault, found)
 
 
 def _queued(system: System) -> Iterator[tuple[Instance, Region]]:

@@ -16,7 +16,8 @@
 --               The server offers a node's oldest frame first, its default, or
 --               the most urgent of up to Most_Open (buffers by priority)
 --
---  RAVENCHART_BUS_PORT names the server, RAVENCHART_BUS_NAME this node. Sent
+--  RAVENCHART_BUS_PORT names the server, RAVENCHART_BUS_NAME this node; with _
+--  and the name of a bus behind it, a variable is for that bus alone. Sent
 --  counts the frames that were acknowledged on the bus, Rejected_Lines the
 --  connections that a server made impossible. A node that is bus-off requests
 --  recovery as its setting states, and its transmit queue waits until it is
@@ -93,8 +94,10 @@ package body Driver is
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
    --  Requests the transmission of the queued frames, and recovery.
 
-   Bus_Port : constant Ports.Port := 29_536;
-   --  The default port of a bus server.
+   Bus_Port : constant Ports.Port :=
+     Ports.Port (29_535 + Bus_Number);
+   --  The default port of a bus server: 29_536 for the first bus of a node,
+   --  29_537 for its second one, and so on.
 
    procedure Connect (Server : out Sockets.Socket; Port : out Ports.Port)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
@@ -199,7 +202,13 @@ package body Driver is
       Result   : Tcp_Sockets.Outcome;
    begin
       Server := Sockets.No_Socket;
-      Ports.Read ("RAVENCHART_BUS_PORT", Bus_Port, Port, Is_Sound);
+      Ports.Read
+        ("RAVENCHART_BUS_PORT",
+         Bus_Name,
+         Bus_Number,
+         Bus_Port,
+         Port,
+         Is_Sound);
       if Is_Sound then
          Tcp_Sockets.Connect (Port, Server, Result);
          case Result is
@@ -207,10 +216,11 @@ package body Driver is
                null;
             when Tcp_Sockets.None_Left =>
                Driver_Hosts.Complain
-                 ("no socket: the system has none left");
+                 (Bus_Number, "no socket: the system has none left");
             when Tcp_Sockets.Refused   =>
                Driver_Hosts.Complain
-                 ("no bus server at 127.0.0.1:",
+                 (Bus_Number,
+                  "no bus server at 127.0.0.1:",
                   Natural (Port),
                   ": trying again");
          end case;
@@ -228,7 +238,7 @@ package body Driver is
       Tcp_Sockets.Limit_Wait (Server, To, Done);
       if not Done then
          Driver_Hosts.Complain
-           ("this system has no limit for the wait on a socket");
+           (Bus_Number, "this system has no limit for the wait on a socket");
       end if;
    end Limit_Wait;
 
@@ -243,13 +253,15 @@ package body Driver is
       Last    : Natural;
       Bytes   : Bus_Records.Image;
    begin
-      Driver_Hosts.Read_Setting ("RAVENCHART_BUS_NAME", Text, Last);
+      Driver_Hosts.Read_Setting
+        ("RAVENCHART_BUS_NAME", Bus_Name, Text, Last);
       if Bus_Records.Is_Name (Text (1 .. Last)) then
          Bytes := Client_Side.Hello (Text (1 .. Last), Setting.Takes_Fd);
       else
          if Last > 0 then
             Driver_Hosts.Complain
-              ("RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;",
+              (Bus_Number,
+               "RAVENCHART_BUS_NAME must have 1 to 16 characters from ! to ~;",
                " joining as ",
                Default);
          end if;
@@ -375,7 +387,8 @@ package body Driver is
       end loop;
       if not Joined then
          Driver_Hosts.Complain
-           ("the bus server does not take this node in: trying again");
+           (Bus_Number,
+            "the bus server does not take this node in: trying again");
       end if;
    end Serve;
 

@@ -24,6 +24,8 @@ with Ravenchart.Can.Ctu_Registers;
 separate (Ravenchart.Can.Controllers)
 package body Driver is
    pragma Refined_State ((State => Poller));
+   pragma Compile_Time_Error
+     (Bus_Number /= 1, "the driver ctucanfd has the controller of one bus");
 
    use type Ada.Real_Time.Time;
    use type Ctu_Registers.Buffer_State;

@@ -3,7 +3,8 @@
 
 --  Driver "slcan": a server on 127.0.0.1 that speaks slcan to one client,
 --  which represents the rest of the bus. Or the host of an slcan adapter on
---  the serial line that RAVENCHART_CAN_DEVICE names.
+--  the serial line that RAVENCHART_CAN_DEVICE names. With _ and the name of a
+--  bus behind it, a variable is for that bus alone.
 --
 --  Guarantees   only whole, well-formed lines go to the client; a client that
 --               stops reading delays the writer alone
@@ -140,7 +141,8 @@ package body Driver is
       Result   : Tcp_Sockets.Outcome;
    begin
       Server := Sockets.No_Socket;
-      Ports.Read ("RAVENCHART_CAN_PORT", 0, Asked, Is_Sound);
+      Ports.Read
+        ("RAVENCHART_CAN_PORT", Bus_Name, Bus_Number, 0, Asked, Is_Sound);
       if Is_Sound then
          Tcp_Sockets.Open_Server (Asked, Server, Given, Result);
          case Result is
@@ -149,10 +151,11 @@ package body Driver is
                  ("slcan on 127.0.0.1:", Natural (Given));
             when Tcp_Sockets.None_Left =>
                Driver_Hosts.Complain
-                 ("no socket: the system has none left");
+                 (Bus_Number, "no socket: the system has none left");
             when Tcp_Sockets.Refused   =>
                Driver_Hosts.Complain
-                 ("port ",
+                 (Bus_Number,
+                  "port ",
                   Natural (Asked),
                   " cannot be opened: is it in use? trying again");
          end case;
@@ -173,15 +176,16 @@ package body Driver is
       Result     : Serial_Lines.Outcome;
    begin
       Client := Sockets.No_Socket;
-      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_SPEED", Speed, Speed_Last);
+      Driver_Hosts.Read_Setting
+        ("RAVENCHART_CAN_SPEED", Bus_Name, Speed, Speed_Last);
       if not Slcan.Openings.Is_Speed (Speed (1 .. Speed_Last)) then
          Driver_Hosts.Complain
-           ("RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
+           (Bus_Number, "RAVENCHART_CAN_SPEED must be a digit, 0 to 8");
          return;
       end if;
       Slcan.Openings.Format
         (Setting, Speed (1 .. Speed_Last), First, First_Last);
-      Driver_Hosts.Read_Setting (Device_Variable, Path, Path_Last);
+      Driver_Hosts.Read_Setting (Device_Variable, Bus_Name, Path, Path_Last);
       Serial_Lines.Open
         (Path (1 .. Path_Last), First (1 .. First_Last), Client, Result);
       case Result is
@@ -189,10 +193,14 @@ package body Driver is
             Driver_Hosts.Announce ("slcan on ", Path (1 .. Path_Last));
          when Serial_Lines.No_Device =>
             Driver_Hosts.Complain
-              (Path (1 .. Path_Last), " cannot be opened: trying again");
+              (Bus_Number,
+               Path (1 .. Path_Last),
+               " cannot be opened: trying again");
          when Serial_Lines.No_Line   =>
             Driver_Hosts.Complain
-              (Path (1 .. Path_Last), " is no serial line: trying again");
+              (Bus_Number,
+               Path (1 .. Path_Last),
+               " is no serial line: trying again");
       end case;
    end Open_Serial;
 
@@ -321,7 +329,7 @@ package body Driver is
       delay until Epochs.Start;
       --  Wait for Start: a client that came before the processors run would
       --  find no reader for its frames.
-      Driver_Hosts.Read_Setting (Device_Variable, Unused, Last);
+      Driver_Hosts.Read_Setting (Device_Variable, Bus_Name, Unused, Last);
       Serial := Last > 0;
       if not Serial then
          loop

@@ -77,7 +77,8 @@ package body Driver is
 
    procedure Read_Name (Name : out Interface_Name; Last : out Positive)
    with Global => null, Post => Last <= Interface_Name'Last;
-   --  The interface that RAVENCHART_CAN_INTERFACE names, or can0.
+   --  The interface that RAVENCHART_CAN_INTERFACE names, or can0 for the first
+   --  bus of a node, can1 for its second one, and so on.
 
    procedure Open (Bus : out Sockets.Socket)
    with Global => (In_Out => (Driver_Hosts.Console, Sockets.Network));
@@ -89,10 +90,13 @@ package body Driver is
    ---------------
 
    procedure Read_Name (Name : out Interface_Name; Last : out Positive) is
-      Default : constant String := "can0";
+      Digit   : constant Character :=
+        Character'Val (Character'Pos ('0') + Bus_Number - 1);
+      Default : constant String := "can" & Digit;
       Length  : Natural;
    begin
-      Driver_Hosts.Read_Setting ("RAVENCHART_CAN_INTERFACE", Name, Length);
+      Driver_Hosts.Read_Setting
+        ("RAVENCHART_CAN_INTERFACE", Bus_Name, Name, Length);
       if Length = 0 then
          Length := Default'Length;
          Name (1 .. Length) := Default;
@@ -116,10 +120,11 @@ package body Driver is
             Driver_Hosts.Announce ("socketcan on ", Name (1 .. Last));
          when Raw_Sockets.No_Can       =>
             Driver_Hosts.Complain
-              ("this system has no SocketCAN; trying again");
+              (Bus_Number, "this system has no SocketCAN; trying again");
          when Raw_Sockets.No_Interface =>
             Driver_Hosts.Complain
-              ("there is no CAN interface ",
+              (Bus_Number,
+               "there is no CAN interface ",
                Name (1 .. Last),
                "; trying again");
       end case;
@@ -203,7 +208,9 @@ package body Driver is
             Upper.Count (Upper.Lost_Out);
             Read_Name (Name, Last);
             Driver_Hosts.Complain
-              (Name (1 .. Last), " is not set up for CAN FD (fd on)");
+              (Bus_Number,
+               Name (1 .. Last),
+               " is not set up for CAN FD (fd on)");
          when Raw_Sockets.Down | Raw_Sockets.Gone =>
             Upper.Count (Upper.Lost_Out);
             Upper.Note (Stopped);

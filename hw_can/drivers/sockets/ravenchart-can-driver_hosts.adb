@@ -11,9 +11,11 @@ package body Ravenchart.Can.Driver_Hosts
 is
    use Linux_Calls;
 
-   Complained : Boolean := False
-   with Atomic;
-   --  The drivers retry; one message is enough.
+   type Bus_Flags is array (Bus_Place) of Boolean
+   with Atomic_Components;
+
+   Complained : Bus_Flags := (others => False);
+   --  The drivers retry; one message of each bus is enough.
 
    procedure Print
      (File : C_Int; Head, Text, About : String; Rest : String := "");
@@ -23,6 +25,11 @@ is
    --  The digits of a Natural.
 
    subtype Image is String (1 .. Digit_Limit);
+
+   function Found
+     (Name, Bus_Name : String) return Interfaces.C.Strings.chars_ptr;
+   --  The value of an environment variable of a bus, or of all where its name
+   --  is empty; Null_Ptr without it.
 
    procedure Format (Number : Natural; Text : out Image; First : out Positive);
    --  In decimal, from First on.
@@ -73,26 +80,58 @@ is
       end loop;
    end Format;
 
+   -----------
+   -- Found --
+   -----------
+
+   function Found
+     (Name, Bus_Name : String) return Interfaces.C.Strings.chars_ptr
+   is
+      use type Interfaces.C.size_t;
+
+      Variable : Interfaces.C.char_array (1 .. Text_Limit) :=
+        (others => Interfaces.C.nul);
+      Last     : Interfaces.C.size_t := 0;
+
+      procedure Add (Part : String);
+      --  Append Part.
+
+      procedure Add (Part : String) is
+      begin
+         for C of Part loop
+            Last            := Last + 1;
+            Variable (Last) := Interfaces.C.To_C (C);
+         end loop;
+      end Add;
+   begin
+      Add (Name);
+      if Bus_Name /= "" then
+         Add ("_");
+         Add (Bus_Name);
+      end if;
+      return C_Get_Environment (Variable);
+   end Found;
+
    ------------------
    -- Read_Setting --
    ------------------
 
    procedure Read_Setting
-     (Name : String; Text : out String; Last : out Natural)
+     (Name, Bus_Name : String; Text : out String; Last : out Natural)
    is
-      use type Interfaces.C.Strings.chars_ptr;
-      Found : constant Interfaces.C.Strings.chars_ptr :=
-        C_Get_Environment (Interfaces.C.To_C (Name));
+      use Interfaces.C.Strings;
+      Own : constant chars_ptr := Found (Name, Bus_Name);
+      Set : constant chars_ptr :=
+        (if Own = Null_Ptr then Found (Name, "") else Own);
    begin
       Text := (others => ' ');
       Last := 0;
-      if Found /= Interfaces.C.Strings.Null_Ptr then
+      if Set /= Null_Ptr then
          declare
-            Value : constant String :=
-              Interfaces.C.Strings.Value (Found, Text'Length);
+            Content : constant String := Value (Set, Text'Length);
          begin
-            Last := Value'Length;
-            Text (1 .. Last) := Value;
+            Last := Content'Length;
+            Text (1 .. Last) := Content;
          end;
       end if;
    end Read_Setting;
@@ -119,20 +158,25 @@ is
    --------------
 
    procedure Complain
-     (Reason : String; About : String := ""; Rest : String := "") is
+     (Bus    : Bus_Place;
+      Reason : String;
+      About  : String := "";
+      Rest   : String := "") is
    begin
-      if not Complained then
-         Complained := True;
+      if not Complained (Bus) then
+         Complained (Bus) := True;
          Print (Standard_Error, "error: can: ", Reason, About, Rest);
       end if;
    end Complain;
 
-   procedure Complain (Reason : String; Number : Natural; Rest : String) is
+   procedure Complain
+     (Bus : Bus_Place; Reason : String; Number : Natural; Rest : String)
+   is
       About : Image;
       First : Positive;
    begin
       Format (Number, About, First);
-      Complain (Reason, About (First .. Digit_Limit), Rest);
+      Complain (Bus, Reason, About (First .. Digit_Limit), Rest);
    end Complain;
 
 end Ravenchart.Can.Driver_Hosts;

@@ -21,13 +21,14 @@ is
    --  The most characters of a setting.
 
    procedure Read_Setting
-     (Name : String; Text : out String; Last : out Natural)
+     (Name, Bus_Name : String; Text : out String; Last : out Natural)
    with
      Global => null,
      Pre    => Text'First = 1 and then Text'Last in 1 .. Text_Limit,
      Post   => Last <= Text'Last;
-   --  The value of an environment variable, cut off where Text ends; empty
-   --  when the variable is not set.
+   --  The value of an environment variable, cut off where Text ends. Name, "_"
+   --  and Bus_Name is its name, or Name where that is not set; Text is empty
+   --  when neither is.
 
    procedure Announce (Text : String; About : String)
    with
@@ -41,7 +42,10 @@ is
    --  The same with a number.
 
    procedure Complain
-     (Reason : String; About : String := ""; Rest : String := "")
+     (Bus    : Bus_Place;
+      Reason : String;
+      About  : String := "";
+      Rest   : String := "")
    with
      Global => (In_Out => Console),
      Pre    =>
@@ -49,9 +53,10 @@ is
        and then About'Length <= Text_Limit
        and then Rest'Length <= Text_Limit;
    --  Print an error message of three parts to standard error: the first one
-   --  only, as most operations are retried.
+   --  of each bus only, as most operations are retried.
 
-   procedure Complain (Reason : String; Number : Natural; Rest : String)
+   procedure Complain
+     (Bus : Bus_Place; Reason : String; Number : Natural; Rest : String)
    with
      Global => (In_Out => Console),
      Pre    =>

@@ -13,6 +13,8 @@ is
 
    procedure Read
      (Variable : String;
+      Bus_Name : String;
+      Bus      : Bus_Place;
       Default  : Port;
       Number   : out Port;
       Is_Sound : out Boolean)
@@ -22,7 +24,7 @@ is
       Sum  : Natural := 0;
    begin
       Number := Default;
-      Driver_Hosts.Read_Setting (Variable, Text, Last);
+      Driver_Hosts.Read_Setting (Variable, Bus_Name, Text, Last);
       Is_Sound := Last <= Digit_Limit;
       for C of Text (1 .. Last) loop
          if C in '0' .. '9' and then Sum <= 65_535 then
@@ -33,7 +35,8 @@ is
       end loop;
       Is_Sound := Is_Sound and then Sum <= 65_535;
       if not Is_Sound then
-         Driver_Hosts.Complain (Variable, " must be a port, 0 to 65535");
+         Driver_Hosts.Complain
+           (Bus, Variable, " must be a port, 0 to 65535");
       elsif Last > 0 then
          Number := Port (Sum);
       end if;

@@ -17,13 +17,16 @@ is
 
    procedure Read
      (Variable : String;
+      Bus_Name : String;
+      Bus      : Bus_Place;
       Default  : Port;
       Number   : out Port;
       Is_Sound : out Boolean)
    with
      Global => (In_Out => Driver_Hosts.Console),
      Pre    => Variable'Length <= Driver_Hosts.Text_Limit;
-   --  The port that Variable names; Default when it is not set. Otherwise
-   --  Is_Sound is False, with a message on standard error.
+   --  The port that Variable gives a bus, as Driver_Hosts.Read_Setting finds
+   --  it; Default when it is not set. Otherwise Is_Sound is False, with a
+   --  message on standard error.
 
 end Ravenchart.Can.Ports;

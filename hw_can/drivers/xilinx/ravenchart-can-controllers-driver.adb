@@ -23,6 +23,8 @@ with Ravenchart.Can.Xcan_Registers;
 separate (Ravenchart.Can.Controllers)
 package body Driver is
    pragma Refined_State ((State => Poller));
+   pragma Compile_Time_Error
+     (Bus_Number /= 1, "the driver xilinx has the controller of one bus");
 
    use type Any_Frames.Frame_Family;
    use type Queueing.Take_Status;
