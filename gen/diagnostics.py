@@ -173,7 +173,7 @@ CODES: Mapping[str, str] = {
     "RV-0715": "A port cannot release a processor.",
     "RV-0716": "A processor that a port releases does not hold the rows that handle its values.",
     "RV-0801": "A section without which there is no system is missing or empty.",
-    "RV-0802": "Something cannot reach from one node to another, or over a second bus, yet.",
+    "RV-0802": "Something cannot reach from one node to another yet.",
     "RV-0803": "Something that the system has once is given twice.",
     "RV-0804": "The model is checked and analysed, but not generated yet.",
     "RV-0805": "A component contains itself.",

@@ -47,6 +47,7 @@ EXAMPLES = (
     "seam_tracker",
     "surgical_robot",
     "three_components",
+    "two_buses",
     "two_nodes",
 )
 MODELS = {

@@ -40,13 +40,14 @@ Check = TypeVar("Check", Protection, Authentication)
 class Carrier:
     """Makes messages of the connections between nodes.
 
-    Each output port has one message, called like instance and port, with the period of its
-    sender. A message that the model has for the port gets more targets instead. A value that
-    no classic frame can carry goes by CAN FD where the bus has a rate for that.
+    Each output port has one message on a bus, called like instance and port, with the period of
+    its sender; on a further bus the name of that stands behind it. A message that the model has
+    for the port there gets more targets instead. A value that no classic frame can carry goes by
+    CAN FD where the bus has a rate for that.
     """
 
     instances: Mapping[str, Instance]
-    bus: Bus | None
+    buses: Sequence[Bus]
 
     def carried(
         self, connections: Sequence[Connection], messages: Sequence[Message]
@@ -59,7 +60,7 @@ class Carrier:
         left: list[Connection] = []
         found = {message.name.lower(): message for message in messages}
         for connection in connections:
-            own = next((m for m in found.values() if m.source == connection.source), None)
+            own = next((m for m in found.values() if _may_carry(m, connection)), None)
             if not self._is_across(connection):
                 left.append(connection)
             elif own is not None:
@@ -67,6 +68,9 @@ class Carrier:
                 found[own.name.lower()] = replace(own, targets=targets)
             else:
                 made = self._message(connection)
+                other = None if made is None else found.get(made.name.lower())
+                if made is not None and other is not None and other.source == made.source:
+                    made = replace(made, name=f"{made.name}_{made.bus}")
                 if made is None or made.name.lower() in found:
                     left.append(connection)
                 else:
@@ -83,14 +87,15 @@ class Carrier:
         component = self.instances[end.instance].component
         name, type_ = f"{path_name(end.instance)}_{end.name}", component.port(end.name).type
         period = component.send_period(end.name)
-        if self.bus is None or period is None or problem_of(name) is not None:
+        bus = bus_named(self.buses, connection.bus)
+        if bus is None or period is None or problem_of(name) is not None:
             return None
         signals = signals_of(type_)
-        fd = self.bus.data_rate is not None and not fits_classic(signals)
+        fd = bus.data_rate is not None and not fits_classic(signals)
         return Message(
             name=name,
             origin=connection.origin,
-            bus=self.bus.name,
+            bus=bus.name,
             identifier=OPEN,
             extended=False,
             type=type_,
@@ -101,6 +106,29 @@ class Carrier:
             period=period,
             fd=fd,
         )
+
+
+def _may_carry(message: Message, connection: Connection) -> bool:
+    """Whether a message has the source of a connection, on the bus that this names if any."""
+    return message.source == connection.source and connection.bus in {None, message.bus}
+
+
+def bus_named(buses: Sequence[Bus], name: str | None) -> Bus | None:
+    """The bus of that name; without one, the only bus there is."""
+    if name is None:
+        return buses[0] if len(buses) == 1 else None
+    return next((bus for bus in buses if bus.name == name), None)
+
+
+def several(buses: Sequence[Bus]) -> str:
+    """The buses of a system with more than one, as a clause."""
+    *first, last = (bus.name for bus in buses)
+    return f"{', '.join(first)} or {last} may carry it"
+
+
+def which_bus(buses: Sequence[Bus]) -> str:
+    """The hint where the model does not say which of several buses carries something."""
+    return f"name the bus: `bus: {buses[0].name}`"
 
 
 def with_nodes(system: System) -> System:

@@ -31,7 +31,7 @@ from ravenchart.gen.language.terms import (
     Type,
     named,
 )
-from ravenchart.gen.model.buses import Message
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Binding, Remote, RemoteRead, Server
 from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import End
@@ -41,6 +41,7 @@ from ravenchart.gen.model.system import Carried, Chain, System
 from ravenchart.gen.origins import Origin
 
 from .calls import awaited, published_by, readers, serving
+from .distribution import bus_named, several, which_bus
 from .identifiers import OPEN
 
 NUMBER = IntegerType("Call_Number", BUILT_IN, 0, 255)
@@ -92,6 +93,8 @@ def obstacle(system: System, binding: Binding) -> Obstacle | None:
     if not system.buses:
         hint = "declare a bus: between nodes, calls travel as its messages"
         return "RV-0606", at, ends, hint
+    if bus_named(system.buses, binding.bus) is None:
+        return "RV-0606", at, f"{ends}; {several(system.buses)}", which_bus(system.buses)
     if is_read and binding.time_limit is None:
         message = f"{own} is read from {there}: the binding needs the key `time_limit`"
         return "RV-1214", at, message, "say how old it may be: `time_limit: ...`"
@@ -171,10 +174,11 @@ def _call(system: System, binding: Binding) -> _Call | None:
         time_limit=limit,
         executions=-(-limit // period),
     )
+    bus = _carrier(system, binding)
     here = Message(
         name=call,
         origin=binding.origin,
-        bus=system.buses[0].name,
+        bus=bus.name,
         identifier=OPEN,
         extended=False,
         type=_numbered(asked, binding.origin, need.argument),
@@ -187,7 +191,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
     )
     providers = {(binding.instance, need.name): remote}
     if need.reply is None or not limit:
-        return _Call(providers, (_laid_out(here, system),), (), (NUMBER, here.type))
+        return _Call(providers, (_laid_out(here, bus),), (), (NUMBER, here.type))
     server_component = system.instance(server.instance).component
     back = replace(
         here,
@@ -199,14 +203,15 @@ def _call(system: System, binding: Binding) -> _Call | None:
     )
     path = (Carried(call), serving(server), Carried(reply))
     chain = Chain(call, binding.origin, path, reaction=limit, age=None)
-    messages = tuple(_laid_out(one, system) for one in (here, back))
+    messages = tuple(_laid_out(one, bus) for one in (here, back))
     return _Call(providers, messages, (chain,), (NUMBER, here.type, back.type))
 
 
 def _published_as(binding: Binding) -> str:
-    """The message that carries a published data item."""
+    """The message that carries a published data item, on the bus that the binding names."""
     assert isinstance(binding.provider, Server)
-    return f"{path_name(binding.provider.instance)}_{binding.need.name}"
+    own = f"{path_name(binding.provider.instance)}_{binding.need.name}"
+    return own if binding.bus is None else f"{own}_{binding.bus}"
 
 
 def _writer(system: System, binding: Binding) -> Region | Activity | None:
@@ -255,10 +260,11 @@ def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
         path = (Carried(name), End(one.instance, watcher.name))
         chains.append(Chain(_called(one), one.origin, path, reaction=None, age=limit))
     every = max(1, min(periods) // writer.timing.period)
+    bus = _carrier(system, first)
     message = Message(
         name=name,
         origin=first.origin,
-        bus=system.buses[0].name,
+        bus=bus.name,
         identifier=OPEN,
         extended=False,
         type=reply,
@@ -269,13 +275,20 @@ def _read(system: System, name: str, bindings: Sequence[Binding]) -> _Call:
         period=Ns(writer.timing.period * every),
         every=every,
     )
-    return _Call(providers, (_laid_out(message, system),), tuple(chains), ())
+    return _Call(providers, (_laid_out(message, bus),), tuple(chains), ())
 
 
-def _laid_out(message: Message, system: System) -> Message:
+def _carrier(system: System, binding: Binding) -> Bus:
+    """The bus of a command that a message can carry."""
+    bus = bus_named(system.buses, binding.bus)
+    assert bus is not None
+    return bus
+
+
+def _laid_out(message: Message, bus: Bus) -> Message:
     """The message as small as its value is; CAN FD where it must be, and its bus has a rate."""
     signals = signals_of(message.type)
-    fd = system.buses[0].data_rate is not None and not fits_classic(signals)
+    fd = bus.data_rate is not None and not fits_classic(signals)
     return replace(message, signals=signals, length=length_of(signals, fd=fd), fd=fd)
 
 

@@ -161,13 +161,17 @@ class InnerInstanceForm(Element):
 
 
 class ConnectionForm(Element):
-    """An output port wired to an input port; between nodes it is a message of the bus."""
+    """An output port wired to an input port; between nodes it is a message of a bus."""
 
     from_: StarredReference = key("`instance.port`, an output port.", alias="from")
     to: StarredReference = key("`instance.port`, an input port.")
+    bus: Reference | None = optional(
+        "The bus that carries it between nodes, where the model has several; without effect inside "
+        "a node."
+    )
 
 
-class InnerConnectionForm(ConnectionForm):
+class InnerConnectionForm(Element):
     """A connection inside a component; one with a port of the component itself delegates it."""
 
     from_: StarredPath = key(

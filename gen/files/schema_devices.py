@@ -185,8 +185,8 @@ class DeviceForm(Element):
     )
 
 
-class BindingForm(Element):
-    """A required interface of an instance, and what provides it."""
+class AnyBindingForm(Element):
+    """A required interface, and what provides it."""
 
     from_: StarredReference = key("`instance.interface`, a required one.", alias="from")
     to: str = key("A device, or `instance.interface`, a provided one.")
@@ -196,7 +196,16 @@ class BindingForm(Element):
     )
 
 
-class InnerBindingForm(BindingForm):
+class BindingForm(AnyBindingForm):
+    """A required interface of an instance, and what provides it."""
+
+    bus: Reference | None = optional(
+        "The bus that carries its commands, replies and events between nodes, where the model has "
+        "several; without effect inside a node."
+    )
+
+
+class InnerBindingForm(AnyBindingForm):
     """A binding inside a component; one with its own interface delegates that."""
 
     from_: StarredPath = key(

@@ -353,6 +353,8 @@ class Binding:
     provider: Device | Server | Remote | RemoteRead | None
     time_limit: Ns | None = None
     """Of a reply from another node, and of the age of what is read there."""
+    bus: str | None = None
+    """The bus between nodes that the model names for it, of several."""
 
 
 def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:

@@ -71,3 +71,5 @@ class Connection:
     origin: Origin
     source: End
     target: End
+    bus: str | None = None
+    """The bus between nodes that the model names for it, of several."""

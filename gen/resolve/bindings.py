@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ravenchart.gen.derive.completion import table_period
-from ravenchart.gen.files.schema_devices import BindingForm
+from ravenchart.gen.files.schema_devices import AnyBindingForm, BindingForm
 from ravenchart.gen.language.names import Findings, meant
 from ravenchart.gen.language.quantities import LONGEST
 from ravenchart.gen.language.terms import Ns
@@ -44,13 +44,26 @@ from .devices import (
     told_by,
     ungathered,
 )
-from .paths import outermost, owner_at, reached, split
-
-Given = dict[tuple[str, str], tuple[BindingForm, Provider | None]]
-"""The binding of (instance, interface), in lower case; no provider: it was wrong."""
+from .paths import DeploymentNames, outermost, owner_at, reached, split
+from .placing import bus_between
 
 
-def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
+@dataclass(frozen=True, slots=True)
+class GivenBinding:
+    """A binding as the model gives it."""
+
+    form: AnyBindingForm
+    provider: Provider | None
+    """None: it was wrong."""
+    bus: str | None = None
+    """The bus that it names for what travels between nodes, of several."""
+
+
+Given = dict[tuple[str, str], GivenBinding]
+"""The binding of (instance, interface), in lower case."""
+
+
+def given_bindings(forms: Iterable[BindingForm], devices: Devices, site: DeploymentNames) -> Given:
     """The bindings of a model, by what they bind."""
     findings, found = devices.findings, Given()
     for form in forms:
@@ -60,6 +73,7 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
             continue
         owner = owner_at(pair[0], at, devices.owners, findings)
         provider = devices.provider(form.to, form.at("to"))
+        bus = bus_between(form, site)
         if owner is None or not reached(owner, at, "interface", findings):
             continue
         required = devices.required(owner).look_up(pair[1], at, findings)
@@ -69,14 +83,14 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices) -> Given:
             key = (instance.lower(), name.lower())
             if key in found:
                 message = f"{owner.name}.{required.name} is bound twice"
-                notes = [(found[key][0].origin, "the first is here")]
+                notes = [(found[key].form.origin, "the first is here")]
                 hint = "several devices are joined to one by `facade` or `array`"
                 findings.error("RV-1203", form.origin, message, notes=notes, hint=hint)
-            found.setdefault(key, (form, provider))
+            found.setdefault(key, GivenBinding(form, provider, bus))
     for one in outermost(devices.owners):
         for inner in (binding.under(one.name) for binding in one.composite.bindings):
             key = (inner.instance.lower(), inner.interface.lower())
-            found.setdefault(key, (inner.form, Server(*inner.server)))
+            found.setdefault(key, GivenBinding(inner.form, Server(*inner.server)))
     return found
 
 
@@ -85,7 +99,7 @@ def bindings_of(
 ) -> tuple[Binding, ...]:
     """The binding of each command that an instance requires."""
     made: list[Binding] = []
-    for form, provider in given.values():
+    for form, provider in ((one.form, one.provider) for one in given.values()):
         if provider is not None and form.has("time_limit") and not has_tasks(provider):
             message = (
                 f"`time_limit` has no meaning for {provider_name(provider)}, which has no task"
@@ -98,9 +112,9 @@ def bindings_of(
         for need in instance.component.needs:
             key = (instance.name.lower(), need.interface.lower())
             if key in given:
-                form, provider = given[key]
-                if provider is not None:
-                    made.append(_bound(instance, need, form, provider, uneven, findings))
+                one = given[key]
+                if one.provider is not None:
+                    made.append(_bound(instance, need, one, one.provider, uneven, findings))
             elif need.optional:
                 made.append(Binding(instance.name, need.origin, need, None))
             elif need.interface not in unbound:
@@ -134,7 +148,8 @@ def event_wires(
     for instance in instances:
         for heard in instance.component.hears:
             wanted, at = instance.outside(heard.interface)
-            form, provider = given.get((instance.name.lower(), heard.interface.lower()), _NOTHING)
+            one = given.get((instance.name.lower(), heard.interface.lower()))
+            form, provider = (None, None) if one is None else (one.form, one.provider)
             needed = any(
                 need.interface == heard.interface and not need.optional
                 for need in instance.component.needs
@@ -144,7 +159,7 @@ def event_wires(
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 hint = _binding(wanted)
                 findings.error("RV-1203", at, message, notes=notes, hint=hint)
-            elif form is not None and provider is not None:
+            elif one is not None and form is not None and provider is not None:
                 told = tells(provider, heard.name)
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 if not told:
@@ -173,12 +188,12 @@ def event_wires(
                     else:
                         assert isinstance(teller, Server)
                         source = End(teller.instance, event.port)
-                        made.append(Connection(at, source, End(instance.name, heard.port)))
+                        made.append(Connection(at, source, End(instance.name, heard.port), one.bus))
     return tuple(made), tuple(polls)
 
 
 def _check_type(
-    poll: Poll, event: DriverCommand, instance: Instance, form: BindingForm, findings: Findings
+    poll: Poll, event: DriverCommand, instance: Instance, form: AnyBindingForm, findings: Findings
 ) -> None:
     """Report an event of a device that has another number of axes than who hears it."""
     taken = instance.component.port(poll.port).type
@@ -190,13 +205,10 @@ def _check_type(
         findings.error("RV-1205", form.at("to"), message, hint="change `axes` of one of them")
 
 
-_NOTHING: tuple[BindingForm | None, Provider | None] = None, None
-
-
 def _bound(
     instance: Instance,
     need: Need,
-    form: BindingForm,
+    given: GivenBinding,
     provider: Provider,
     uneven: set[tuple[str, str]],
     findings: Findings,
@@ -205,6 +217,7 @@ def _bound(
 
     ``uneven`` has the interfaces and providers whose different axes were reported.
     """
+    form = given.form
     at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
 
     def report(code: str, message: str, hint: str | None) -> None:
@@ -231,7 +244,7 @@ def _bound(
             report("RV-1205", message, "join devices by `array`, or change `axes`")
     limit = LONGEST if form.lost("time_limit") else form.time_limit
     limit = None if limit is None else Ns(limit)
-    return Binding(instance.name, form.origin, need, found, limit)
+    return Binding(instance.name, form.origin, need, found, limit, given.bus)
 
 
 def _axes(count: int) -> str:

@@ -18,6 +18,7 @@ from ravenchart.gen.files.schema_deployment import (
     InstanceForm,
     plain_parameters,
 )
+from ravenchart.gen.files.schema_devices import BindingForm
 from ravenchart.gen.language.names import Findings, NameScope, NameUse
 from ravenchart.gen.language.terms import Scalar
 from ravenchart.gen.model.component import Direction, Parameter
@@ -183,9 +184,22 @@ def connection_of(form: ConnectionForm, site: DeploymentNames) -> tuple[Connecti
     """The connections between the ports that both ends lead to; none where one is wrong."""
     sources = ends_at(form.from_, form.at("from"), Direction.OUT, site)
     targets = ends_at(form.to, form.at("to"), Direction.IN, site)
+    bus = bus_between(form, site)
     return tuple(
-        Connection(form.origin, source, target) for source, _ in sources for target, _ in targets
+        Connection(form.origin, source, target, bus)
+        for source, _ in sources
+        for target, _ in targets
     )
+
+
+def bus_between(form: ConnectionForm | BindingForm, site: DeploymentNames) -> str | None:
+    """The bus that a connection or binding names, which must exist; None: the only one."""
+    if form.bus is None:
+        return None
+    found = site.buses.look_up(form.bus, form.at("bus"), site.findings)
+    if found is None:
+        found = next(iter(site.buses.sound()), None)  # that it has no bus is no second error
+    return found.name if found is not None and len(site.buses.names()) > 1 else None
 
 
 def inner_connections(site: DeploymentNames) -> Iterator[Connection]:

@@ -153,6 +153,9 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
 MOST_PROCESSORS = 30
 """Processors of a system at most: each has a priority of its own."""
 
+MOST_BUSES = 8
+"""Buses of a system at most: so many controllers one node has."""
+
 
 def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
     """Sections that a system must have, and elements of which it has one or a limited number."""
@@ -160,12 +163,10 @@ def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
         if whole and model.is_empty(section):
             hint = f"declare one under `{section}:`"
             findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
-    for _, form in model.entries("buses")[1:]:
-        first = model.entries("buses")[0][1].origin
-        message = "a second bus: a system has one bus, so far"
-        hint = "declare one bus; another system may hold the other"
-        notes = [(first, "the first is here")]
-        findings.error("RV-0802", form.origin, message, notes=notes, hint=hint)
+    for _, form in model.entries("buses")[MOST_BUSES:]:
+        message = f"a system has at most {MOST_BUSES} buses"
+        hint = "another system may hold the others"
+        findings.error("RV-0209", form.origin, message, hint=hint)
     for _, form in model.entries("processors")[MOST_PROCESSORS:]:
         message = f"a system has at most {MOST_PROCESSORS} processors"
         hint = "let one processor run more rows: each table holds many"
@@ -324,7 +325,7 @@ class _Sections:
             forms.declare(name, form.origin, form, self.findings)
         devices = Devices(forms, scope, kinds, site.owners, types, self.findings, damaged)
         given = given_bindings(
-            (form for file in self.model.files for form in file.bindings or ()), devices
+            (form for file in self.model.files for form in file.bindings or ()), devices, site
         )
         known = devices.all().names()
         lost = any(
@@ -423,7 +424,7 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
         sections.sound.discard("connections")
     for part in parts:
         damaged |= {f"{part.component.name}.{one}" for one in part.damaged}
-    carrier = Carrier({i.name: i for i in instances.sound()}, next(iter(buses.sound()), None))
+    carrier = Carrier({i.name: i for i in instances.sound()}, buses.sound())
     connections, carried = carrier.carried((*connections, *wires), messages.sound())
     system = System(
         name=name,

@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from itertools import product
 
+from ravenchart.gen.derive.distribution import several, which_bus
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.names import path_name
 from ravenchart.gen.language.quantities import shown
@@ -115,8 +116,11 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
                 f"{sender} is on {source.node}, but {target.outside(connection.target.name)[0]} "
                 f"is on {target.node}"
             )
-            if system.buses:
-                bus = system.buses[0].name
+            if connection.bus is None and len(system.buses) > 1:
+                message += f"; {several(system.buses)}"
+                hint = which_bus(system.buses)
+            elif system.buses:
+                bus = connection.bus or system.buses[0].name
                 hint = f"declare a message of {bus} with `from: {sender}`"
             else:
                 hint = "declare a bus: between nodes, values travel as its messages"

@@ -88,31 +88,35 @@ class PlantForm(ScenarioForm):
     """Communication step of a Functional Mock-up Unit."""
 
 
-class Cut(ScenarioForm):
-    """A node, and those behind it in the model, are cut off the bus at that time."""
+class BusEventForm(ScenarioForm):
+    """Something that happens to a bus."""
 
     at: Time
+    on: str | None = None
+    """The bus, where the model has several."""
+
+
+class Cut(BusEventForm):
+    """A node, and those behind it in the model, are cut off the bus at that time."""
+
     cut: str
 
 
-class Mend(ScenarioForm):
+class Mend(BusEventForm):
     """The bus is whole again from that time on."""
 
-    at: Time
     mend: Literal[True]
 
 
-class Hold(ScenarioForm):
+class Hold(BusEventForm):
     """The bus is shorted to one level from that time on: no other gets through."""
 
-    at: Time
     hold: Literal["dominant", "recessive"]
 
 
-class LetGo(ScenarioForm):
+class LetGo(BusEventForm):
     """The bus is held no more from that time on."""
 
-    at: Time
     let_go: Literal[True]
 
 

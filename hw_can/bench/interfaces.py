@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +14,7 @@ import can
 from can.interfaces import BACKENDS
 
 from .peer import BenchError, Codec, OnFrame, Peer, link_of, unrecorded
+from .several import bus_of
 
 BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
 """So that the interface also exists in a checkout that is on the path and not installed."""
@@ -74,8 +77,24 @@ def fault_text(fault: BaseException) -> str:
     return "".join(c if c.isprintable() else "?" for c in said)
 
 
-def joined_peer(interface: BusEnd, codec: Codec, record: OnFrame = unrecorded) -> Peer:
-    """A peer at that end of a bus; BenchError when there is none."""
-    bus = opened_bus(interface)
-    link = link_of(bus) if interface.name == "slcan" and "socket://" in interface.channel else None
-    return Peer(bus, codec, link, record, gone=str(interface))
+def joined_peer(
+    interfaces: Mapping[str, BusEnd], codec: Codec, record: OnFrame = unrecorded
+) -> Peer:
+    """A peer at an end of each bus, by the name of the bus; BenchError when there is none."""
+    with ExitStack() as stack:
+        ends: dict[str, can.BusABC] = {}
+        for bus, interface in interfaces.items():
+            ends[bus] = opened_bus(interface)
+            stack.callback(ends[bus].shutdown)
+        made = bus_of(ends)
+        link = None
+        if len(ends) == 1 and interface.name == "slcan" and "socket://" in interface.channel:
+            link = link_of(made)
+        peer = Peer(made, codec, link, record, gone=shown_ends(interfaces))
+        stack.pop_all()
+        return peer
+
+
+def shown_ends(interfaces: Mapping[str, BusEnd]) -> str:
+    """Ends of buses in words."""
+    return " and ".join(map(str, interfaces.values()))

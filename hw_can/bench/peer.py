@@ -82,6 +82,10 @@ class Codec:
         """Whether there are CAN FD frames among the messages."""
         return any(m.is_fd for m in self._database.messages)
 
+    def has(self, name: str) -> bool:
+        """Whether the DBC has a message of that name."""
+        return name in self._names.values()
+
     def fields(self, name: str) -> tuple[str, ...]:
         """The fields of a message; BenchError when the DBC has none of that name."""
         return tuple(s.name for s in self._message(name).signals)
@@ -210,15 +214,6 @@ class Peer:
         except (can.CanError, OSError) as fault:
             raise BenchError(f"no slcan server on port {port}: {fault}") from None
         return Peer(bus, codec, link_of(bus), record)
-
-    @staticmethod
-    def join(channel: str, codec: Codec) -> Peer:
-        """A peer that is a node of the bus behind ``host:port``; BenchError where there is none."""
-        try:
-            bus = can.Bus(interface="ravenchart", channel=channel, name="bench", fd=codec.has_fd)
-            return Peer(bus, codec)
-        except (can.CanError, OSError) as fault:
-            raise BenchError(f"no bus at {channel}: {fault}") from None
 
     def clock(self) -> float:
         """The time of the bus, in s."""

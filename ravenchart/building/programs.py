@@ -278,20 +278,22 @@ def _mark(model: Path) -> str:
 
 
 def default_driver(checked: Checked, target: targets.Target | None = None) -> str:
-    """For one node with a bus slcan: python-can talks to it. For several what joins a bus.
+    """For one node with a bus slcan: python-can talks to it. For several of either what joins one.
 
     So does one whose transmit buffers are by priority: an slcan adapter has none. On another
     target it is the first of that target's drivers.
     """
     if target is not None and target.name != NATIVE:
         return target.facts.drivers[0]
-    if len(checked.system.nodes) > 1 or _by_priority(checked):
+    if max(len(checked.system.nodes), len(checked.system.buses)) > 1 or _by_priority(checked):
         return "bus"
     return "slcan" if checked.system.buses else "loopback"
 
 
 NO_FD = ("xilinx",)
 """Drivers of controllers that have no CAN FD."""
+ONE_BUS = ("ctucanfd", "xilinx")
+"""Drivers that have the controller of one bus of a node."""
 BY_PRIORITY = ("loopback", "bus")
 """Drivers behind which a controller can offer the most urgent of its frames."""
 
@@ -315,6 +317,15 @@ def check_driver(checked: Checked, driver: str, target: targets.Target | None = 
             f"ravenchart: error: the controllers of the driver {driver} have no CAN FD, and there "
             f"are CAN FD frames on {flexible}"
         )
+    for node in checked.system.nodes if driver in ONE_BUS else ():
+        buses = [
+            bus.name for bus in checked.system.buses if checked.system.joins(bus.name, node.name)
+        ]
+        if len(buses) > 1:
+            raise Refused(
+                f"ravenchart: error: the driver {driver} has the controller of one bus, and "
+                f"{node.name} is on {' and '.join(buses)}"
+            )
     bus = _by_priority(checked)
     if bus is not None and driver not in BY_PRIORITY:
         raise Refused(

@@ -75,18 +75,19 @@ def add_interface(sub: argparse.ArgumentParser, use: str, *, builds: bool = True
     ``builds``: without it the command builds and starts something.
     """
     sub.add_argument(
-        "--interface", metavar="NAME", action=_OfOneBus,
+        "--interface", metavar="NAME", action=_GivenOnce,
         help=f"{use} on an interface of python-can, such as socketcan, slcan or ravenchart, at "
         f"the bit rate of the model{'; nothing is built or started' if builds else ''}",
     )  # fmt: skip
     sub.add_argument(
-        "--channel", action=_OfOneBus,
-        help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT",
+        "--channel", action="append", default=[], metavar="[BUS=]CHANNEL",
+        help="its channel, such as can0, /dev/ttyACM0 or socket://HOST:PORT; once for each of "
+        "several buses, with its name",
     )  # fmt: skip
 
 
-class _OfOneBus(argparse.Action):
-    """An option that is given once: a second adapter would silently take the place of the first."""
+class _GivenOnce(argparse.Action):
+    """An option that is given once: a second one would silently take the place of the first."""
 
     def __call__(
         self,
@@ -96,21 +97,21 @@ class _OfOneBus(argparse.Action):
         option_string: str | None = None,
     ) -> None:
         if getattr(namespace, self.dest) is not None:
-            raise argparse.ArgumentError(self, "is given twice, and a model has one bus")
+            raise argparse.ArgumentError(self, "is given twice")
         setattr(namespace, self.dest, values)
 
 
-def interface(options: argparse.Namespace, system: System) -> BusEnd | None:
-    """The interface that was named; Unusable where half of it is, or the model has no bus."""
-    from ravenchart.running.attaching import interface_of
+def interfaces(options: argparse.Namespace, system: System) -> dict[str, BusEnd]:
+    """The interface of each bus that was named; Unusable where half of it is, or it has no bus."""
+    from ravenchart.running.attaching import interfaces_of
 
     named = named_interface(options)
-    return None if named is None else interface_of(system, *named)
+    return {} if named is None else interfaces_of(system, *named)
 
 
-def named_interface(options: argparse.Namespace) -> tuple[str, str] | None:
-    """The interface and its channel, where they are named; Unusable where one of both is."""
-    if (options.interface is None) != (options.channel is None):
+def named_interface(options: argparse.Namespace) -> tuple[str, list[str]] | None:
+    """The interface and its channels, where they are named; Unusable where one of both is."""
+    if (options.interface is None) != (not options.channel):
         raise Unusable("--interface and --channel go together")
     return None if options.interface is None else (options.interface, options.channel)
 

@@ -9,9 +9,10 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
+from pathlib import Path
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.live import Live
@@ -20,6 +21,7 @@ from rich.segment import Segment
 from ravenchart import terminal
 from ravenchart.building.checking import Checked
 from ravenchart.failures import OK, WRONG, Unusable
+from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.running import bus_text, monitor_text, monitoring
 from ravenchart.running.bus_watch import WINDOW, BusWatch
 from ravenchart.running.snapshots import VARIABLE
@@ -48,21 +50,24 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Watch it until it ends; the exit status."""
     checked = common.checked(options, deadlines=False)
-    interface = common.interface(options, checked.system)
+    interfaces = common.interfaces(options, checked.system)
     if options.file:
         files = monitoring.given(checked, options.file)
     else:
         files = monitoring.found(checked, lambda text: say(options.answer, text))
-        if not files and interface is None:
+        if not files and not interfaces:
             raise Unusable(
                 f"{monitoring.none_runs(checked)}; start one, name with --file the file that "
                 f"{VARIABLE} gave it, or name its bus with --interface and --channel"
             )
     with ExitStack() as stack:
         controllers = stack.enter_context(monitoring.watching(checked, files))
-        ring = None if interface or options.file else monitoring.bus_of_run(checked)
-        end = interface or ring
-        buses = [BusWatch(checked.analysis, end)] if end else []
+        ends: Mapping[str, BusEnd | Path] = interfaces
+        if not interfaces and not options.file:
+            ends = monitoring.buses_of_run(checked)
+        buses = [
+            BusWatch(checked.analysis, end, checked.system.bus(bus)) for bus, end in ends.items()
+        ]
         seen = _Seen(checked, controllers, buses, alone=options.responses)
         for bus in seen.buses:
             stack.callback(bus.close)

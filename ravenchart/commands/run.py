@@ -39,11 +39,11 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Run it; the exit status."""
     checked = common.checked(options)
-    interface = common.interface(options, checked.system)
-    if interface is None:
+    interfaces = common.interfaces(options, checked.system)
+    if not interfaces:
         execute, request = _started(options, checked)
     else:
-        execute = partial(run_on_bus, interface)
+        execute = partial(run_on_bus, interfaces)
         request = running.on_bus(options, checked, options.report, options.log)
     try:
         outcome = run_model(request, refuse=options.answer.fail, execute=execute)

@@ -21,7 +21,7 @@ from ravenchart.failures import OK, WRONG, Refused, Unusable
 from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.running import judge, monitoring, scenarios
-from ravenchart.running.attaching import spoken_bus
+from ravenchart.running.attaching import require_bus
 from ravenchart.running.process import Ended, StartError
 from ravenchart.running.remote import NoAnswerError, RemoteSystem, connected
 from ravenchart.running.shell import Shell
@@ -51,17 +51,17 @@ def execute(options: argparse.Namespace) -> int:
     """Carry out the lines of standard input; the exit status."""
     checked = common.checked(options)
     system = checked.system
-    spoken_bus(system)
-    interface = common.interface(options, system)
-    if options.file and interface is None:
+    require_bus(system)
+    interfaces = common.interfaces(options, system)
+    if options.file and not interfaces:
         raise Unusable("--file goes with --interface: the shell knows those that it starts")
     drives = scenarios.checked(options.drives, system).drives if options.drives else {}
     ended: Sequence[Ended] = ()
     with ExitStack() as stack:
-        if interface is None:
+        if not interfaces:
             robot, ended = _started(options, checked, drives, stack)
         else:
-            robot = connected(checked, interface, drives, options.log, options.file)
+            robot = connected(checked, interfaces, drives, options.log, options.file)
         session = _Session(options, stack.enter_context(robot))
         passed = session.typed() if sys.stdin.isatty() else session.script()
         if drives and robot.skipped:

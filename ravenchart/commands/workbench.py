@@ -31,7 +31,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Serve until it is stopped; the exit status."""
-    from ravenchart.running.attaching import interface_of
+    from ravenchart.running.attaching import interfaces_of
     from ravenchart.workbench.hub import Hub
     from ravenchart.workbench.live import LiveView
     from ravenchart.workbench.replay import ReplayView
@@ -52,7 +52,7 @@ def execute(options: argparse.Namespace) -> int:
                 return WorkbenchPages(Hub(session, ReplayView(options.model, options.replay)))
         saved = session.saved.analysis
         if bus is not None and saved is not None:
-            interface_of(saved.system, *bus)
+            interfaces_of(saved.system, *bus)
         live = LiveView(options.model, bus, options.file)
         if options.file and saved is not None:
             with progress("look for the controllers"):

@@ -153,16 +153,20 @@ class Deployment:
 
     def _messages(self) -> list[Message]:
         found = [self._message(name, form) for name, form in self.model.section("messages").maps()]
-        by_source = {m.source.lower(): m for m in found if m.source}
         for wire in self.model.connections:
             source, target = wire.text("from") or "", wire.text("to") or ""
             source, target = self._end(source), self._end(target)
             if self.node_of(source) == self.node_of(target):
                 continue
-            if source.lower() not in by_source:
-                by_source[source.lower()] = self._carried(source)
-                found.append(by_source[source.lower()])
-            by_source[source.lower()].targets.append(target)
+            bus = self.buses.name(wire.text("bus") or "")
+            sent = [m for m in found if (m.source or "").lower() == source.lower()]
+            own = next((m for m in sent if bus in {None, m.bus}), None)
+            if own is None:
+                own = self._carried(source, bus or next(iter(self.buses), ""))
+                if any(m.name.lower() == own.name.lower() for m in sent):
+                    own.name += f"_{own.bus}"
+                found.append(own)
+            own.targets.append(target)
         return found
 
     def _end(self, text: str) -> str:
@@ -234,9 +238,8 @@ class Deployment:
             return {f"{source.rpartition('.')[0]}.ports"}
         return {row for row, _ in self.rows_that_send(source)}
 
-    def _carried(self, source: str) -> Message:
-        """The message that a connection between nodes becomes."""
-        bus = next(iter(self.buses), "")
+    def _carried(self, source: str, bus: str) -> Message:
+        """The message of a bus that a connection between nodes becomes."""
         kind, period = self._type_of(source), self._send_period(source)
         form = Mapping()
         length = length_of(self.model, kind, form, fd=False)

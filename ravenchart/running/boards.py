@@ -50,6 +50,11 @@ def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> Run
             f"the emulator of {board.target.name} starts one core only, and the model has tasks on "
             "several: run it without `--target`"
         )
+    if len(request.analysis.system.buses) > 1:
+        raise Unusable(
+            f"the emulator of {board.target.name} joins one bus only, and the model has several: "
+            "run it without `--target`"
+        )
     if emulator is None or shutil.which(emulator.command[0]) is None:
         hint = emulator.hint if emulator else "run the program on the board itself"
         raise Unusable(f"the target {board.target.name} has no emulator on PATH; {hint}")

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from can.io.logger import MESSAGE_WRITERS
 from ravenchart.failures import Unusable
 from ravenchart.hw_can.bench.bus_records import RECORD_BYTES, can_message, decode, greeting_of
 from ravenchart.hw_can.bench.peer import OnFrame
+from ravenchart.hw_can.bench.several import by_bus
 
 from . import bus_ring
 from .bus_ring import BusRing
@@ -35,15 +36,16 @@ def suffixes() -> str:
 
 
 @contextmanager
-def written(path: Path | None, beside: Path | None = None) -> Iterator[int]:
+def written(path: Path | None, beside: Path | None = None, bus: str = "") -> Iterator[int]:
     """A descriptor for the server's records, which go to the log; it is whole after the block.
 
-    They also go to a ring ``beside`` a program. The one who uses the descriptor must have closed it
-    by then. Raises OSError or Unusable where the log cannot be written.
+    They also go to a ring ``beside`` a program, of that ``bus`` where there are several. The one
+    who uses the descriptor must have closed it by then. Raises OSError or Unusable where the log
+    cannot be written.
     """
     with ExitStack() as stack:
         logger = None if path is None else stack.enter_context(_opened(path))
-        ring = stack.enter_context(bus_ring.shown(beside))
+        ring = stack.enter_context(bus_ring.shown(beside, bus))
         reading, writing = os.pipe()
         source = stack.enter_context(open(reading, "rb", buffering=CHUNK))
         copying = threading.Thread(target=_copy, args=(source.read, logger, ring))
@@ -73,6 +75,23 @@ def recorded(path: Path | None, bus: str, beside: Path | None = None) -> Iterato
                 logger.on_message_received(frame)
 
         yield record
+
+
+@contextmanager
+def all_recorded(path: Path | None, buses: Sequence[str]) -> Iterator[OnFrame]:
+    """The same for several buses, each with a log of its own as `log_of` names it."""
+    with ExitStack() as stack:
+        records = {
+            bus: stack.enter_context(recorded(log_of(path, bus, buses), bus)) for bus in buses
+        }
+        yield by_bus(records)
+
+
+def log_of(path: Path | None, bus: str, buses: Sequence[str]) -> Path | None:
+    """The log of one of these buses: ``run-chassis.blf`` of several; None without a log."""
+    if path is None or len(buses) == 1:
+        return path
+    return path.with_stem(f"{path.stem}-{bus}")
 
 
 def _opened(path: Path) -> MessageWriter:

@@ -97,10 +97,18 @@ class BusRing:
         os.pwrite(self._file, told, 0)
 
 
+def mark_of(bus: str) -> str:
+    """That of the file of one of several buses; of the only one without a name."""
+    return f"{MARK}{bus}-" if bus else MARK
+
+
 @contextmanager
-def shown(beside: Path | None) -> Iterator[BusRing | None]:
-    """A ring beside a program, for the time of a block; None where none can be there."""
-    path = None if beside is None else held_files.new_file(beside, MARK)
+def shown(beside: Path | None, bus: str = "") -> Iterator[BusRing | None]:
+    """A ring beside a program, for the time of a block; None where none can be there.
+
+    ``bus`` is its bus, where there are several.
+    """
+    path = None if beside is None else held_files.new_file(beside, mark_of(bus))
     if path is None:
         yield None
         return

@@ -9,14 +9,14 @@ expectation of a scenario about these neither passes nor fails.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from ravenchart.hw_can.bench.interfaces import BusEnd
+from ravenchart.hw_can.bench.interfaces import BusEnd, shown_ends
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, load_scenario
 
 from . import bus_log, judge, result
-from .attaching import attached
+from .attaching import attached, vocabulary_at
 from .process import Ended, separate_cores
 from .result import RunOutcome
 from .runs import RunRequest
@@ -28,18 +28,20 @@ GOES_ON = Ended(exit_code=0, killed=False, real_time=True, warnings=())
 """Of a controller that is neither started nor stopped here."""
 
 
-def run_on_bus(interface: BusEnd, request: RunRequest, progress: Progress) -> RunOutcome:
+def run_on_bus(
+    interfaces: Mapping[str, BusEnd], request: RunRequest, progress: Progress
+) -> RunOutcome:
     """Play the scenario, and leave the controller as it is then; Unusable where there is no bus."""
     assert request.scenario is not None
     plan = load_scenario(request.scenario)
-    vocabulary = BusVocabulary.of(request.analysis.system)
-    with bus_log.recorded(request.log, vocabulary.bus.name) as record:
-        peer = attached(interface, vocabulary, record)
+    vocabulary = vocabulary_at(request.analysis.system, interfaces)
+    with bus_log.all_recorded(request.log, [*interfaces]) as record:
+        peer = attached(interfaces, vocabulary, record)
         with separate_cores():
             played = run_scenario(plan, peer, progress=progress)
     unseen = {"expect_trace": plan.trace_checks, "expect": plan.expected}
     return RunOutcome(
-        title=f"{plan.title}, on {interface}",
+        title=f"{plan.title}, on {shown_ends(interfaces)}",
         scenario=plan,
         scenario_result=played,
         observation=None,
@@ -49,7 +51,7 @@ def run_on_bus(interface: BusEnd, request: RunRequest, progress: Progress) -> Ru
         journeys=(),
         failures=(
             *judge.failures(GOES_ON, played, None, (), ()),
-            *_silence(vocabulary, interface, played),
+            *_silence(vocabulary, interfaces, played),
         ),
         notes=(*result.notes(GOES_ON, played, None, (), ()), *_unjudged(plan)),
         clock_offset=None,
@@ -58,14 +60,19 @@ def run_on_bus(interface: BusEnd, request: RunRequest, progress: Progress) -> Ru
     )
 
 
-def _silence(vocabulary: BusVocabulary, interface: BusEnd, played: ScenarioResult) -> Iterator[str]:
+def _silence(
+    vocabulary: BusVocabulary, interfaces: Mapping[str, BusEnd], played: ScenarioResult
+) -> Iterator[str]:
     """Nothing that the controller sends came: most likely it is on another bus, or on none."""
-    own = vocabulary.messages.keys() - vocabulary.outside()
-    if own and not own & played.received.keys():
-        yield (
-            f"no frame of the controller came from {interface}: does it run there, at "
-            f"{vocabulary.bus.bit_rate} bit/s?"
-        )
+    outside = vocabulary.outside()
+    for bus in vocabulary.buses:
+        own = {m.name for m in vocabulary.system.messages if m.bus == bus.name}
+        own = (own & vocabulary.messages.keys()) - set(outside)
+        if own and not own & played.received.keys():
+            yield (
+                f"no frame of the controller came from {interfaces[bus.name]}: does it run there, "
+                f"at {bus.bit_rate} bit/s?"
+            )
 
 
 def _unjudged(plan: Scenario) -> Iterator[str]:

@@ -118,14 +118,17 @@ class _Seen:
 class BusWatch:
     """Takes the frames of a bus in a thread of its own; anybody may look."""
 
-    def __init__(self, analysis: Analysis, end: BusEnd | Path) -> None:
-        """The bus of the model, at that interface or in the ring of a run; Unusable without it."""
-        self._words = BusVocabulary.of(analysis.system)
-        bus = self._words.bus.name
-        known = [m for m in analysis.system.frames if m.bus == bus]
+    def __init__(self, analysis: Analysis, end: BusEnd | Path, bus: Bus | None = None) -> None:
+        """The bus at that interface, or in the ring of a run; Unusable without it.
+
+        ``bus`` is that of the model, its first one unless given.
+        """
+        self._bus = bus or analysis.system.buses[0]
+        self._words = BusVocabulary.of(analysis.system, (self._bus,))
+        known = [m for m in analysis.system.frames if m.bus == self._bus.name]
         self._known = {(m.identifier, m.extended): m for m in known}
         self._name = str(end) if isinstance(end, BusEnd) else OF_A_RUN
-        self._bound = most_in_a_second(analysis, self._words.bus)
+        self._bound = most_in_a_second(analysis, self._bus)
         self._seen = {m.name: _Seen() for m in known}
         self._frames = self._unknown = self._malformed = self._errors = 0
         self._gone: str | None = None
@@ -156,7 +159,7 @@ class BusWatch:
             now = time.monotonic()
             self._forget(now)
             return WatchedBus(
-                bus=self._words.bus.name,
+                bus=self._bus.name,
                 interface=self._name,
                 now=self._since(now),
                 load=sum(length for _, length in self._taken) / (WINDOW * SECOND),
@@ -211,7 +214,7 @@ class BusWatch:
             self._errors += 1
             return
         self._frames += 1
-        self._taken.append((now, duration(frame, self._words.bus)))
+        self._taken.append((now, duration(frame, self._bus)))
         self._forget(now)
         message = self._known.get((frame.arbitration_id, frame.is_extended_id))
         if message is None or message.fd != frame.is_fd or frame.is_remote_frame:

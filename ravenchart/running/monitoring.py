@@ -46,9 +46,16 @@ def found(checked: Checked, note: Callable[[str], None]) -> list[NodeFile]:
     return files
 
 
-def bus_of_run(checked: Checked) -> Path | None:
-    """The ring of the bus on which `run` or `shell` lets controllers run now; the newest one."""
-    return next(iter(_held(checked, programs.programs_of(checked), bus_ring.MARK)), None)
+def buses_of_run(checked: Checked) -> dict[str, Path]:
+    """The ring of each bus on which `run` or `shell` lets controllers run now; the newest ones."""
+    made, buses = programs.programs_of(checked), checked.system.buses
+    found: dict[str, Path] = {}
+    for bus in buses:
+        mark = bus_ring.mark_of(bus.name if len(buses) > 1 else "")
+        rings = _held(checked, made, mark)
+        if rings:
+            found[bus.name] = rings[0]
+    return found
 
 
 def _held(checked: Checked, made: Sequence[programs.Program], mark: str) -> list[Path]:

@@ -136,9 +136,10 @@ class ControllerProcess:
         """The TCP port of its bus, once it says so; StartError when it does not."""
         return self._wait_for(_PORT)
 
-    def wait_until_joined(self) -> None:
-        """Until it reports that it is a node of its bus; StartError when it does not."""
-        self._wait_for(_JOINED)
+    def wait_until_joined(self, buses: int = 1) -> None:
+        """Until it reports that it is a node of so many buses; StartError when it does not."""
+        for _ in range(buses):
+            self._wait_for(_JOINED)
 
     def _wait_for(self, said: re.Pattern[str]) -> int:
         deadline = time.monotonic() + START_LIMIT

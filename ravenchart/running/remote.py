@@ -39,7 +39,7 @@ from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrame
 from ravenchart.hw_can.bench.replay import from_outside, read_log
 
 from . import bus_log, monitoring, scenarios
-from .attaching import attached, interface_of
+from .attaching import attached, interfaces_of, vocabulary_at
 from .chart_names import NamedChart
 from .chart_states import ChartWatch, SeenChart, in_words
 from .process import separate_cores
@@ -382,8 +382,10 @@ class RemoteSystem:
                 age = rounded.up(rounded.of_seconds(time.monotonic() - at))
                 return NoAnswerError(f"{told}: last {values[waiting.name]}, {age} ago")
             heard = ", ".join(sorted(self._last)) or "none"
-        rate = self.vocabulary.bus.bit_rate
-        hint = f"is the controller on this bus, at {rate} bit/s? Messages received: {heard}"
+        system = self.vocabulary.system
+        bus = system.bus(next(m.bus for m in system.frames if m.name == waiting.message))
+        hint = f"is the controller on {bus.name}, at {bus.bit_rate} bit/s? "
+        hint += f"Messages received: {heard}"
         return NoAnswerError(f"{told}: no {waiting.message} came\n  hint: {hint}")
 
     # --- in the thread of the bench
@@ -423,13 +425,15 @@ def connect(
     model: str | Path,
     *,
     interface: str,
-    channel: str,
+    channel: str | Sequence[str],
     drives: Path | None = None,
     log: Path | None = None,
     files: Sequence[str | Path] = (),
 ) -> RemoteSystem:
     """The controllers of a model that run on a bus: any interface of python-can, and its channel.
 
+    Of a model with several buses the channels are given as `BUS=CHANNEL`, one for each bus that is
+    spoken on.
     ``drives`` is a scenario whose drives are simulated. ``log`` gets the frames, in the format
     that its suffix names. ``files`` are those that RAVENCHART_MONITOR names to controllers on this
     machine, as `NODE=FILE` where there are several nodes: they show the states of charts. Raises
@@ -437,22 +441,23 @@ def connect(
     """
     checked = checking.check(Path(model))
     forms = scenarios.checked(drives, checked.system).drives if drives is not None else {}
-    end = interface_of(checked.system, interface, channel)
-    return connected(checked, end, forms, log, [str(file) for file in files])
+    channels = [channel] if isinstance(channel, str) else channel
+    ends = interfaces_of(checked.system, interface, channels)
+    return connected(checked, ends, forms, log, [str(file) for file in files])
 
 
 def connected(
     checked: checking.Checked,
-    end: BusEnd,
+    ends: Mapping[str, BusEnd],
     drives: Mapping[str, DriveForm],
     log: Path | None = None,
     files: Sequence[str] = (),
 ) -> RemoteSystem:
-    """The same of a model that was read, at an interface."""
+    """The same of a model that was read, at interfaces."""
     with ExitStack() as stack:
-        vocabulary = BusVocabulary.of(checked.system)
+        vocabulary = vocabulary_at(checked.system, ends)
         named = monitoring.given(checked, files)
         watched = stack.enter_context(monitoring.watching(checked, named))
-        record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name))
-        peer = attached(end, vocabulary, record)
+        record = stack.enter_context(bus_log.all_recorded(log, [*ends]))
+        peer = attached(ends, vocabulary, record)
         return RemoteSystem(vocabulary, peer, drives, stack.pop_all(), watched)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from itertools import cycle
 from pathlib import Path
@@ -31,12 +32,14 @@ from ravenchart.building import stacks
 from ravenchart.building.programs import TRACE_MAP, Program, to_standard_error
 from ravenchart.building.targets import Board
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.bus_records import NAME_LENGTH
 from ravenchart.hw_can.bench.forms import Cut, Hold, Mend
 from ravenchart.hw_can.bench.peer import BenchError, Codec, Peer
 from ravenchart.hw_can.bench.runner import Progress, ScenarioResult, run_scenario
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
+from ravenchart.hw_can.bench.several import codec_of, joined_servers
 from ravenchart.stacks.report import Memory
 
 from . import bus_log, expected, judge, plots, result, server, snapshots, summary, value_plots
@@ -88,8 +91,8 @@ class RunRequest:
 
 
 def joins_a_server(system: System, programs: int) -> bool:
-    """Do that many programs of the system run on a bus server?"""
-    return programs > 1 or any(one.by_priority for one in system.buses)
+    """Do that many programs of the system run on bus servers?"""
+    return max(programs, len(system.buses)) > 1 or any(one.by_priority for one in system.buses)
 
 
 def run_on_this_machine(request: RunRequest, progress: Progress) -> RunOutcome:
@@ -99,7 +102,7 @@ def run_on_this_machine(request: RunRequest, progress: Progress) -> RunOutcome:
         return run_nodes(
             request.controllers,
             request.analysis,
-            dbc_of(request),
+            request.generated,
             request.scenario,
             request.seconds,
             request.folder,
@@ -388,6 +391,14 @@ def read(trace: Path, trace_map: TraceMap, problems: list[str]) -> Observation |
     return None
 
 
+def codec_in(generated: Path, system: System) -> Codec:
+    """That of the databases of the model's buses; BenchError when there is none."""
+    if not system.buses:
+        raise BenchError(f"{system.name} has no bus for a scenario to play on")
+    files = {bus.name: generated / f"{bus.name.lower()}.dbc" for bus in system.buses}
+    return codec_of({bus: Codec.from_file(path) for bus, path in files.items()})
+
+
 def dbc_of(request: RunRequest) -> Path:
     """The DBC of the model's bus; BenchError when it has none."""
     for one in request.analysis.system.buses:
@@ -406,7 +417,7 @@ def _text(path: Path) -> str:
 def run_nodes(
     controllers: Sequence[Controller],
     analysis: Analysis,
-    dbc: Path,
+    generated: Path,
     scenario: Path | None,
     seconds: float,
     out_dir: Path,
@@ -414,13 +425,13 @@ def run_nodes(
     *,
     log: Path | None = None,
 ) -> RunOutcome:
-    """Run the controllers of several nodes on one simulated bus, through ``scenario``.
+    """Run the controllers of nodes on simulated buses, through ``scenario``.
 
-    Without one they run for ``seconds``. Raises as `run_controller`; ToolMissing and ToolFailed
-    where the bus cannot be built.
+    Without one they run for ``seconds``; ``generated`` has the databases. Raises as
+    `run_controller`; ToolMissing and ToolFailed where the bus cannot be built.
     """
     plan = None if scenario is None else load_scenario(scenario)
-    codec = Codec.from_file(dbc)
+    codec = codec_in(generated, analysis.system)
     maps = [read_map(_text(c.trace_json), c.trace_json.name) for c in controllers]
     out_dir.mkdir(parents=True, exist_ok=True)
     traces = [(out_dir / f"trace-{c.node}.txt").absolute() for c in controllers]
@@ -431,20 +442,18 @@ def run_nodes(
     played: ScenarioResult | None = None
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
-    words = bus_words(analysis, controllers, plan)
-    bus = server.running("port=0", *words, log=log, beside=controllers[0].executable)
-    with separate_cores(), bus as (_, channel):
+    with separate_cores(), served(analysis.system, controllers, plan, log) as channels:
         running: list[ControllerProcess] = []
         try:
-            for process in joining(controllers, traces, channel, cores):
+            for process, joined in joining(analysis.system, controllers, traces, channels, cores):
                 running.append(process)
-                process.wait_until_joined()
+                process.wait_until_joined(joined)
             if plan is None:
                 early = next((p for p in running if not p.runs_for(seconds / len(running))), None)
                 if early is not None:
                     raise StartError(f"a controller ended by itself within {seconds:g} s")
             else:
-                peer = Peer.join(channel, codec)
+                peer = joined_servers(channels, codec)
                 played = run_scenario(plan, peer, progress=progress)
         except (StartError, BenchError) as fault:
             problems.append(str(fault))
@@ -461,25 +470,54 @@ def run_nodes(
     return concluded(title, plan, played, seen, all_ended(ended), problems, analysis)
 
 
+@contextmanager
+def served(
+    system: System, controllers: Sequence[Controller], plan: Scenario | None, log: Path | None
+) -> Iterator[dict[str, str]]:
+    """A server for each bus, for the time of a block; the channel of each, by bus.
+
+    Raises as `bus_words` before one is started.
+    """
+    names = [bus.name for bus in system.buses]
+    words = {bus.name: bus_words(system, bus, controllers, plan) for bus in system.buses}
+    channels: dict[str, str] = {}
+    with ExitStack() as stack:
+        for bus in names:
+            made = server.running(
+                "port=0",
+                *words[bus],
+                log=bus_log.log_of(log, bus, names),
+                beside=controllers[0].executable,
+                bus=bus if len(names) > 1 else "",
+            )
+            _, channels[bus] = stack.enter_context(made)
+        yield channels
+
+
 def joining(
-    controllers: Sequence[Controller], traces: Sequence[Path], channel: str, cores: Sequence[int]
-) -> Iterator[ControllerProcess]:
-    """Start one process after the other, to join the bus at ``host:port``. StartError."""
+    system: System,
+    controllers: Sequence[Controller],
+    traces: Sequence[Path],
+    channels: Mapping[str, str],
+    cores: Sequence[int],
+) -> Iterator[tuple[ControllerProcess, int]]:
+    """Start one process after the other, to join its buses; how many these are. StartError."""
     for one, trace, core in zip(controllers, traces, cycle(cores), strict=False):
-        name, port = one.node[:NAME_LENGTH], channel.rpartition(":")[2]
-        told = {"RAVENCHART_BUS_PORT": port, "RAVENCHART_BUS_NAME": name}
-        yield ControllerProcess(one.executable, trace, core, **told)
+        told = {"RAVENCHART_BUS_NAME": one.node[:NAME_LENGTH]}
+        for bus, channel in channels.items():
+            told[f"RAVENCHART_BUS_PORT_{bus.upper()}"] = channel.rpartition(":")[2]
+        joined = sum(system.joins(bus, one.node) for bus in channels)
+        yield ControllerProcess(one.executable, trace, core, **told), joined
 
 
 def bus_words(
-    analysis: Analysis, controllers: Sequence[Controller], plan: Scenario | None
+    system: System, line: Bus, controllers: Sequence[Controller], plan: Scenario | None
 ) -> list[str]:
-    """The settings of the bus server: its bit rates, and the events on the bus with their times.
+    """The settings of the server of a bus: its bit rates, and the events on it with their times.
 
     Raises BenchError for a rate that the server cannot have, and ScenarioError where the scenario
-    cuts off a node that does not exist.
+    cuts off a node that is not on the bus.
     """
-    line = analysis.system.buses[0]
     data_rate = (line.data_rate or line.bit_rate) if line.takes_fd else 0
     for rate in (line.bit_rate, data_rate):
         if rate and server.SECOND % rate:
@@ -487,8 +525,11 @@ def bus_words(
     words = [f"bitrate={line.bit_rate}", f"data_bitrate={data_rate}"]
     if line.by_priority:
         words.append("buffer=priority")
-    numbers = {controller.node.lower(): n for n, controller in enumerate(controllers, 1)}
+    here = [one.node for one in controllers if system.joins(line.name, one.node)]
+    numbers = {node.lower(): n for n, node in enumerate(here, 1)}
     for event in plan.bus_events if plan else ():
+        if event.on is not None and event.on.lower() != line.name.lower():
+            continue
         at = round(event.at * 1e9)
         if isinstance(event, Mend):
             words.append(f"event={at}:mend")
@@ -499,7 +540,7 @@ def bus_words(
         elif numbers.get(event.cut.lower(), 1) > 1:
             words.append(f"event={at}:cut:{numbers[event.cut.lower()]}")
         else:
-            known = ", ".join(c.node for c in controllers[1:])
+            known = ", ".join(here[1:])
             raise ScenarioError(f"error: bus: cut takes one of {known}, not {event.cut}")
     return words
 

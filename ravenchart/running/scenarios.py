@@ -23,7 +23,7 @@ from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
-from ravenchart.hw_can.bench.forms import Cut, Expected, Lost, Missed, Overran, TraceCheck
+from ravenchart.hw_can.bench.forms import BusEvent, Cut, Expected, Lost, Missed, Overran, TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
 from ravenchart.hw_can.bench.replay import from_outside, read_log
@@ -159,7 +159,7 @@ class _Check:
     def message(self, name: str, path: FormPath) -> DbcMessage | None:
         """A message of the bus."""
         if name not in self.messages:
-            told = f"there is no message `{name}` on {self.system.buses[0].name}"
+            told = f"there is no message `{name}` on {self.vocabulary.where}"
             hint = f"the messages are {', '.join(self.messages)}"
             self.source.wrong(UNKNOWN, path, told, hint)
         return self.messages.get(name)
@@ -257,17 +257,35 @@ class _Check:
         return None
 
     def bus(self, scenario: Scenario) -> None:
-        """Nodes that can be cut off: all but the first."""
-        homes = [node.name for node in self.system.nodes]
-        if scenario.bus_events and len(homes) == 1:
+        """Buses that there are, and nodes that can be cut off: all but the first on a bus."""
+        nodes = [node.name for node in self.system.nodes]
+        if scenario.bus_events and len(nodes) == 1:
             told = f"`bus` is for a system with several nodes, and {self.system.name} has one"
             self.source.wrong(MISFIT, ("bus",), told, "remove `bus`", key=True)
             return
         for index, event in enumerate(scenario.bus_events):
-            if isinstance(event, Cut) and event.cut.lower() not in map(str.lower, homes[1:]):
+            bus = self._bus_of(event, index)
+            homes = [node for node in nodes if bus and self.system.joins(bus, node)]
+            if not bus or not isinstance(event, Cut):
+                continue
+            if event.cut.lower() not in map(str.lower, homes[1:]):
                 told = f"`{event.cut}` cannot be cut off"
                 hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
                 self.source.wrong(UNKNOWN, ("bus", index, "cut"), told, hint)
+
+    def _bus_of(self, event: BusEvent, index: int) -> str:
+        """The bus of an event; empty where it names none of several, or one that is not there."""
+        buses = {bus.name.lower(): bus.name for bus in self.system.buses}
+        known = " or ".join(f"`on: {name}`" for name in buses.values())
+        if event.on is None and len(buses) > 1:
+            told = f"{self.system.name} has {len(buses)} buses, and the event names none"
+            self.source.wrong(MISFIT, ("bus", index), told, f"add {known}")
+            return ""
+        name = buses.get((event.on or next(iter(buses))).lower(), "")
+        if not name:
+            told = f"there is no bus `{event.on}`"
+            self.source.wrong(UNKNOWN, ("bus", index, "on"), told, f"write {known}")
+        return name
 
     def expected(self, fault: Expected, path: FormPath) -> None:
         """A fault of something that the model has, once."""

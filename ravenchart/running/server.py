@@ -32,16 +32,16 @@ def built() -> Path:
 
 @contextmanager
 def running(
-    *told: str, log: Path | None = None, beside: Path | None = None
+    *told: str, log: Path | None = None, beside: Path | None = None, bus: str = ""
 ) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """A bus server for the time of a block, and its channel, ``host:port``.
 
     With ``log`` all frames and error frames of the bus are written there; the file is complete
     after the block. Raises OSError where that cannot be. They are shown to others by a ring
-    ``beside`` a program.
+    ``beside`` a program, as of that ``bus`` where there are several.
     """
     with (
-        _commanded(told, log, beside) as (words, descriptors),
+        _commanded(told, log, beside, bus) as (words, descriptors),
         children.running(
             words,
             stdin=subprocess.DEVNULL,
@@ -87,14 +87,14 @@ def announced(
 
 @contextmanager
 def _commanded(
-    told: Sequence[str], log: Path | None, beside: Path | None = None
+    told: Sequence[str], log: Path | None, beside: Path | None = None, bus: str = ""
 ) -> Iterator[tuple[list[str | Path], tuple[int, ...]]]:
     """The command, and the descriptors that it inherits."""
     words: list[str | Path] = [built(), *told]
     if log is None and beside is None:
         yield words, ()
     else:
-        with bus_log.written(log, beside) as descriptor:
+        with bus_log.written(log, beside, bus) as descriptor:
             yield [*words, f"log=/dev/fd/{descriptor}"], (descriptor,)
 
 

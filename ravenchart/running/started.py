@@ -13,10 +13,11 @@ from pathlib import Path
 
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.hw_can.bench.peer import Peer
+from ravenchart.hw_can.bench.several import joined_servers
 
-from . import bus_log, server
+from . import bus_log
 from .process import ControllerProcess, Ended, separate_cores
-from .runs import Controller, bus_words, joining, joins_a_server
+from .runs import Controller, joining, joins_a_server, served
 from .vocabulary import BusVocabulary
 
 
@@ -58,16 +59,14 @@ def started(
     with ExitStack() as stack:
         own = stack.enter_context(separate_cores(analysis.system.most_cores))
         if joins_a_server(analysis.system, len(controllers)):
-            words = bus_words(analysis, controllers, None)
-            bus = server.running("port=0", *words, log=log, beside=first)
-            _, channel = stack.enter_context(bus)
+            channels = stack.enter_context(served(analysis.system, controllers, None, log))
             stack.callback(_stop, processes, ended, grace)
-            for process in joining(controllers, traces, channel, cores):
+            for process, joined in joining(analysis.system, controllers, traces, channels, cores):
                 processes.append(process)
-                process.wait_until_joined()
-            peer = Peer.join(channel, vocabulary.codec)
+                process.wait_until_joined(joined)
+            peer = joined_servers(channels, vocabulary.codec)
         else:
-            record = stack.enter_context(bus_log.recorded(log, vocabulary.bus.name, first))
+            record = stack.enter_context(bus_log.recorded(log, vocabulary.buses[0].name, first))
             stack.callback(_stop, processes, ended, grace)
             processes.append(ControllerProcess(first, traces[0], own))
             peer = Peer.connect(processes[0].wait_for_port(), vocabulary.codec, record)

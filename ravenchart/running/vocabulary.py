@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The words of a model's bus: its messages, their fields and values, by the model's names.
+"""The words of a model's buses: the messages, their fields and values, by the model's names.
 
 With them are the charts, whose states snapshots show. Scenarios, the shell and `RemoteSystem` look
-their words up here. The messages are those of the bus's CAN database, which the bench uses, too.
+their words up here. The messages are those of the CAN databases, which the bench uses, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 
@@ -23,6 +23,7 @@ from ravenchart.gen.model.system import System
 from ravenchart.hw_can.bench.naming import as_in_model
 from ravenchart.hw_can.bench.peer import OUTSIDE, Codec, Value
 from ravenchart.hw_can.bench.protection import HEADER
+from ravenchart.hw_can.bench.several import codec_of
 
 from .chart_names import NamedChart, charts_of
 
@@ -39,10 +40,10 @@ class WordError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class BusVocabulary:
-    """The messages of one bus."""
+    """The messages of the buses of a system, or of some of them."""
 
     system: System
-    bus: Bus
+    buses: tuple[Bus, ...]
     messages: Mapping[str, DbcMessage]
     codec: Codec
     partial: frozenset[tuple[str, str]]
@@ -53,17 +54,26 @@ class BusVocabulary:
     """The charts of all instances, by `instance.Region`."""
 
     @staticmethod
-    def of(system: System) -> BusVocabulary:
-        """That of the bus of a system, which has one at most (RV-0802)."""
-        bus = system.buses[0]
-        database = cantools.database.load_string(emit_dbc(system, bus), "dbc")
-        assert isinstance(database, cantools.database.Database)
-        database = as_in_model(database)
+    def of(system: System, buses: Sequence[Bus] = ()) -> BusVocabulary:
+        """That of these buses of a system; of all without them."""
+        buses = tuple(buses) or system.buses
+        messages: dict[str, DbcMessage] = {}
+        codecs: dict[str, Codec] = {}
+        for bus in buses:
+            database = cantools.database.load_string(emit_dbc(system, bus), "dbc")
+            assert isinstance(database, cantools.database.Database)
+            database = as_in_model(database)
+            codecs[bus.name] = Codec(database)
+            messages |= {message.name: message for message in database.messages}
         partial = {(m.name, s.name) for m in system.messages for s in m.signals if s.other}
-        messages = {message.name: message for message in database.messages}
         commands = dict(_commands(messages.values()))
-        codec, charts = Codec(database), charts_of(system)
-        return BusVocabulary(system, bus, messages, codec, frozenset(partial), commands, charts)
+        codec, charts = codec_of(codecs), charts_of(system)
+        return BusVocabulary(system, buses, messages, codec, frozenset(partial), commands, charts)
+
+    @property
+    def where(self) -> str:
+        """The buses in words."""
+        return " and ".join(bus.name for bus in self.buses)
 
     def outside(self) -> list[str]:
         """The messages that no node of the model sends."""

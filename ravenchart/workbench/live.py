@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -16,43 +15,39 @@ from typing import Any
 from ravenchart.building import checking
 from ravenchart.building.checking import Checked
 from ravenchart.failures import Failure, said_of
-from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.running import monitoring
-from ravenchart.running.attaching import interface_of
-from ravenchart.running.bus_watch import BusWatch
 from ravenchart.running.monitor_text import overlooked_in_words
 from ravenchart.running.watched import WatchedController
 
+from .live_buses import PAUSE, LiveBuses
 from .motion import LastValues, shown_node
-
-PAUSE = 1.0
-"""Seconds between two attempts to watch a bus, and, beside one, to find controllers."""
 
 
 class LiveView:
     """The controllers and the bus as pages see them; any thread may look."""
 
     def __init__(
-        self, path: Path, bus: tuple[str, str] | None = None, files: Sequence[str] = ()
+        self,
+        path: Path,
+        buses: tuple[str, Sequence[str]] | None = None,
+        files: Sequence[str] = (),
     ) -> None:
-        """For the model at ``path``; ``bus`` is an interface of python-can and its channel.
+        """For the model at ``path``; ``buses`` are an interface of python-can and its channels.
 
         ``files``: as of `monitoring.given`, in place of the controllers that are found. The serial
         lines of boards are among them.
         """
         self._path = path
         self._given = files
-        self._named = bus
-        self._bus: BusWatch | None = None
-        self._bus_text = ""
-        self._next_join = self._next_look = 0.0
+        self._buses = LiveBuses(buses)
+        self._next_look = 0.0
         self._text = ""
         self._other = ""
         """The message about a program of another model, while no other program is seen."""
         self._lock = Lock()
         self._checked: Checked | None = None
         self._digest: str | None = None
-        self._stack, self._on_bus = ExitStack(), ExitStack()
+        self._stack = ExitStack()
         self._watched: list[WatchedController] = []
         self._values: list[LastValues] = []
 
@@ -81,10 +76,11 @@ class LiveView:
                 text = self._found(digest)
             if any(one.sequence for one in self._watched):
                 self._other = ""
-            self._join()
-            buses = [] if self._bus is None else [asdict(self._bus.look())]
-            text = " ".join(part for part in (text or self._other, self._bus_text) if part)
-            return {"text": text, "nodes": list(self._nodes()), "buses": buses}
+            if self._checked is not None:
+                runs = any(one.node.process is not None for one in self._watched)
+                self._buses.join(self._checked, runs=runs, rings=not self._given)
+            text = " ".join(part for part in (text or self._other, self._buses.text) if part)
+            return {"text": text, "nodes": list(self._nodes()), "buses": self._buses.look()}
 
     def close(self) -> None:
         """Leave controllers and bus."""
@@ -93,9 +89,8 @@ class LiveView:
 
     def _leave(self) -> None:
         self._watched, self._values = [], []
-        self._bus, self._bus_text, self._next_join = None, "", 0.0
         self._stack.close()
-        self._on_bus.close()
+        self._buses.close()
 
     def _nodes(self) -> Iterator[dict[str, Any]]:
         for number, one in enumerate(self._watched):
@@ -110,40 +105,13 @@ class LiveView:
                 "overlooked": overlooked_in_words(one.overlooked),
             }
 
-    def _join(self) -> None:
-        """Watch the bus, or watch it again where it was gone; say why not where that cannot be."""
-        works = self._bus is not None and self._bus.look().gone is None
-        now = time.monotonic()
-        if self._checked is None or works or now < self._next_join:
-            return
-        self._next_join = now + PAUSE
-        try:
-            end = self._end(self._checked)
-            if end is None:
-                return
-            watch = BusWatch(self._checked.analysis, end)
-        except Failure as problem:
-            if self._bus is None:
-                self._bus_text = _without_prefix(problem)
-            return
-        self._on_bus.close()
-        self._bus, self._bus_text = watch, ""
-        self._on_bus.callback(watch.close)
-
-    def _end(self, checked: Checked) -> BusEnd | Path | None:
-        """That of the bus that was named; else the ring of the run that is watched, if any."""
-        if self._named is not None:
-            return interface_of(checked.system, *self._named)
-        runs = any(one.node.process is not None for one in self._watched)
-        return monitoring.bus_of_run(checked) if runs and not self._given else None
-
     def _found(self, digest: str) -> str:
         """As `_attach`, or why that fails.
 
         Beside a bus, at which pages look all the time, it is not done more often.
         """
         now = time.monotonic()
-        if self._bus is None or digest != self._digest or now >= self._next_look:
+        if not self._buses.are_seen or digest != self._digest or now >= self._next_look:
             self._next_look = now + PAUSE
             try:
                 self._text = self._attach(digest)

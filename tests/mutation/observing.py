@@ -317,7 +317,7 @@ class PlayedTogether(Observer):
         outcome = run_nodes(
             controllers,
             self.checked.analysis,
-            next(self.generated.glob("*.dbc")),
+            self.generated,
             self.checked.folder / "scenario.yaml",
             0.0,
             self.folder / "run",

@@ -36,7 +36,7 @@ def test_calls_are_executed_on_the_other_node_and_a_missing_reply_is_told(folder
     outcome = run_nodes(
         controllers,
         checked.analysis,
-        folder / "generated" / "link.dbc",
+        folder / "generated",
         folder / "cut_bus.yaml",
         0.0,
         folder / "report",

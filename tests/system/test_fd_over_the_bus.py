@@ -68,7 +68,7 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
     outcome = run_nodes(
         tuple(controller(made) for made in programs.programs_of(checked)),
         checked.analysis,
-        folder / "generated" / "link.dbc",
+        folder / "generated",
         folder / "scenario.yaml",
         0.0,
         folder / "report",
@@ -89,9 +89,9 @@ def test_a_rate_that_the_simulated_bus_cannot_have_is_told(folder: Path) -> None
     model.write_text(model.read_text().replace("data_rate: 4 Mbit/s", "data_rate: 3 Mbit/s"))
     checked = checking.check(model)
     generation.write_program(checked)
-    dbc = folder / "generated" / "link.dbc"
+    generated = folder / "generated"
     with pytest.raises(BenchError, match="link: a bit at 3000000 bit/s is no whole number of ns"):
-        run_nodes((), checked.analysis, dbc, None, 1.0, folder / "report")
+        run_nodes((), checked.analysis, generated, None, 1.0, folder / "report")
 
 
 def changed(frame: can.Message, **fields: object) -> can.Message:

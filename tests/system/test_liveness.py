@@ -447,7 +447,7 @@ def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
     result = run.run_nodes(
         [run.controller(one) for one in made.values()],
         checked.analysis,
-        folder / "generated" / "link.dbc",
+        folder / "generated",
         None,
         2.0,
         tmp_path / "report",

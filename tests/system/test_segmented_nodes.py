@@ -79,7 +79,7 @@ def test_the_two_nodes_exchange_values(built: Built) -> None:
     outcome = run_nodes(
         tuple(built.controllers.values()),
         built.checked.analysis,
-        built.folder / "generated" / "line.dbc",
+        built.folder / "generated",
         None,
         2.0,
         built.folder / "report",

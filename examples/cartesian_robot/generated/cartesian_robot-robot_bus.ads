@@ -38,7 +38,9 @@ is
         (Bit_Rate => Timing_Certificate.Robot_Bus_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
-         Recovery => Ravenchart.Can.Automatic));
+         Recovery => Ravenchart.Can.Automatic),
+      Bus_Number => 1,
+      Bus_Name => "ROBOT_BUS");
 
    use type Ravenchart.Can.Bits_Per_Second;
 

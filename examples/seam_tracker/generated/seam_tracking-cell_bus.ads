@@ -35,7 +35,9 @@ is
         (Bit_Rate => Timing_Certificate.Cell_Bus_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
-         Recovery => Ravenchart.Can.Automatic));
+         Recovery => Ravenchart.Can.Automatic),
+      Bus_Number => 1,
+      Bus_Name => "CELL_BUS");
 
    use type Ravenchart.Can.Bits_Per_Second;
 

@@ -31,7 +31,9 @@ ZERO = {"x": 0, "y": 0, "z": 0}
 @pytest.fixture
 def near(far: FarEnd, request: pytest.FixtureRequest) -> Iterator[RemoteSystem]:
     words = robot()
-    with RemoteSystem(words, joined_peer(BusEnd("virtual", request.node.name), words.codec)) as one:
+    with RemoteSystem(
+        words, joined_peer({"bus": BusEnd("virtual", request.node.name)}, words.codec)
+    ) as one:
         yield one
 
 
@@ -128,7 +130,7 @@ def test_without_an_answer_the_error_says_what_came_last(near: RemoteSystem, far
         near.wait_for("condition", "Ready", 0.05)
     assert str(silent.value) == (
         "robot_status.condition was not Ready within 0.05 s: no robot_status came\n"
-        "  hint: is the controller on this bus, at 500000 bit/s? Messages received: none"
+        "  hint: is the controller on robot_bus, at 500000 bit/s? Messages received: none"
     )
     far.say(*status("Failed"))
     near.wait_for("condition", "Failed", 2)
@@ -181,7 +183,7 @@ def test_a_bus_that_breaks_ends_who_waits_and_names_itself() -> None:
     words = robot()
     try:
         with RemoteSystem(
-            words, joined_peer(BusEnd("ravenchart", server.channel), words.codec)
+            words, joined_peer({"bus": BusEnd("ravenchart", server.channel)}, words.codec)
         ) as it:
             threading.Timer(0.1, server.cut).start()
             with pytest.raises(BenchError, match=rf"^ravenchart '{server.channel}': the bus serv"):

@@ -26,8 +26,7 @@ from ravenchart.paths import ROOT
 from ravenchart.running import bus_text, bus_watch
 from ravenchart.running.bus_watch import BusWatch, WatchedBus, duration, most_in_a_second
 from ravenchart.running.vocabulary import BusVocabulary
-from ravenchart.workbench import live as live_module
-from ravenchart.workbench import serving
+from ravenchart.workbench import live_buses, serving
 from ravenchart.workbench.live import LiveView
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import within
@@ -35,6 +34,7 @@ from tests.support.can_frames import within
 pytestmark = pytest.mark.clock
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
+TWO_BUSES = ROOT / "examples" / "two_buses" / "model.yaml"
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
 ALONE = ROOT / "examples" / "three_components" / "model.yaml"
 ANALYSIS = checking.check(PUMP, deadlines=False).analysis
@@ -111,14 +111,16 @@ def test_a_frame_takes_as_long_as_in_the_analysis(model: Path) -> None:
     compared = 0
     for message in system.messages:
         dbc = words.messages.get(message.name)
-        if dbc is None or message.bus != words.bus.name:
+        if dbc is None or message.bus != words.buses[0].name:
             continue
         frame = can.Message(
             arbitration_id=dbc.frame_id, is_extended_id=dbc.is_extended_frame, is_fd=dbc.is_fd,
             bitrate_switch=dbc.is_fd, data=bytes(dbc.length),
         )  # fmt: skip
-        bits = frame_length(message, words.bus)
-        assert duration(frame, words.bus) == bits.time(words.bus.bit_rate, words.bus.data_rate or 0)
+        bits = frame_length(message, words.buses[0])
+        assert duration(frame, words.buses[0]) == bits.time(
+            words.buses[0].bit_rate, words.buses[0].data_rate or 0
+        )
         compared += 1
     assert compared >= 4
 
@@ -131,7 +133,7 @@ def test_the_load_is_that_of_a_second_and_at_first_too_low(
     for _ in range(10):
         sender.send(frame)
     found = looked(watch, lambda bus: bus.frames == 10)
-    assert found.load == pytest.approx(10 * duration(frame, WORDS.bus) / 1e9)
+    assert found.load == pytest.approx(10 * duration(frame, WORDS.buses[0]) / 1e9)
     time.sleep(1.1)
     assert watch.look().load == 0
 
@@ -139,7 +141,7 @@ def test_the_load_is_that_of_a_second_and_at_first_too_low(
 def test_the_most_that_a_second_can_hold_is_counted_by_hand() -> None:
     #  line once in 1 s, motor and panel in 50 ms, display in 200 ms, each a little later
     by_hand = 2 * 520 + 21 * 600 + 21 * 680 + 6 * 680
-    assert most_in_a_second(ANALYSIS, WORDS.bus) == pytest.approx(by_hand / 1e6)
+    assert most_in_a_second(ANALYSIS, WORDS.buses[0]) == pytest.approx(by_hand / 1e6)
 
 
 def test_a_driver_that_fails_is_told_and_what_came_stays(
@@ -206,15 +208,21 @@ def test_what_cannot_be_watched_is_said(words: list[str], text: str, capsys: PRI
 
 
 @pytest.mark.parametrize("command", ["monitor", "workbench", "run", "shell"])
-@pytest.mark.parametrize("option", ["--interface", "--channel"])
-def test_a_second_adapter_is_refused_and_takes_the_place_of_none(
-    command: str, option: str, capsys: PRINTED
+def test_a_second_interface_is_refused_and_takes_the_place_of_none(
+    command: str, capsys: PRINTED
 ) -> None:
-    words = ["--interface", "virtual", "--channel", "one", option, "virtual"]
+    words = ["--interface", "virtual", "--channel", "one", "--interface", "virtual"]
     with pytest.raises(SystemExit) as ended:
         main([command, str(PUMP), *words])
     assert ended.value.code == UNUSABLE
-    assert f"{option}: is given twice, and a model has one bus" in capsys.readouterr().err
+    assert "--interface: is given twice" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["monitor", "workbench", "run", "shell"])
+def test_a_second_channel_of_a_bus_is_refused(command: str, capsys: PRINTED) -> None:
+    words = ["--interface", "virtual", "--channel", "one", "--channel", "two"]
+    assert main([command, str(PUMP), *words]) == UNUSABLE
+    assert "--channel two: ward has a channel already" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("command", ["monitor", "workbench"])
@@ -237,15 +245,30 @@ def test_a_bus_that_there_cannot_be_ends_the_command_before_anything_starts(
     assert text in said.err and "http://" not in said.out
 
 
-def test_a_second_bus_is_an_error_of_the_model(tmp_path: Path, capsys: PRINTED) -> None:
-    """Every command on a bus relies on it; docs/monitor.md says so."""
-    text = PUMP.read_text(encoding="utf-8")
-    other = "bit_rate: 1 Mbit/s, driver_wcet: 1 us, receive_depth: 8, transmit_depth: 8"
-    model = tmp_path / "model.yaml"
-    model.write_text(text.replace("buses:\n", f"buses:\n  other: {{{other}}}\n"), encoding="utf-8")
-    words = ["--interface", "virtual", "--channel", "x", "--once"]
-    assert main(["monitor", str(model), *words]) == WRONG
-    assert "RV-0802" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("channels", "text"),
+    [
+        (["x"], "--channel x names no bus of Two_Buses: write chassis=CHANNEL or cabin=CHANNEL"),
+        (["spare=x"], "--channel spare=x names no bus of Two_Buses"),
+        (["cabin=x", "Cabin=y"], "--channel Cabin=y: cabin has a channel already"),
+    ],
+)
+def test_of_several_buses_each_channel_names_one(
+    channels: list[str], text: str, capsys: PRINTED
+) -> None:
+    words = [word for channel in channels for word in ("--channel", channel)]
+    call = ["monitor", str(TWO_BUSES), "--interface", "virtual", *words, "--once"]
+    assert main(call) == UNUSABLE
+    assert text in capsys.readouterr().err
+
+
+def test_one_of_several_buses_is_watched_alone(capsys: PRINTED) -> None:
+    call = ["monitor", str(TWO_BUSES), "--interface", "virtual", "--channel", "cabin=x", "--once"]
+    assert main([*call, "--json"]) == OK
+    result = json.loads(capsys.readouterr().out)["result"]
+    assert [bus["bus"] for bus in result["buses"]] == ["cabin"]
+    names = {message["name"] for message in result["buses"][0]["messages"]}
+    assert {"spare_speed", "needle"} <= names and "pedal" not in names
 
 
 def test_a_bus_that_goes_ends_the_monitor(
@@ -263,30 +286,30 @@ def test_a_bus_that_goes_ends_the_monitor(
 
 
 def test_the_page_gets_the_bus_beside_the_controllers(channel: str, sender: can.BusABC) -> None:
-    live = LiveView(PUMP, ("virtual", channel))
+    live = LiveView(PUMP, ("virtual", [channel]))
     digest = ANALYSIS.system.digest
     assert [one["bus"] for one in live.look(digest)["buses"]] == ["ward"]
     sender.send(WORDS.codec.encode("motor", {"value": 3}))
     within(lambda: live.look(digest)["buses"][0]["frames"])
     assert live.look(digest)["buses"][0]["frames"] == 1
     live.close()
-    wrong = LiveView(PUMP, ("nothing", "x"))
+    wrong = LiveView(PUMP, ("nothing", ["x"]))
     found = wrong.look(digest)
     assert found["buses"] == [] and "has no interface 'nothing'" in found["text"]
 
 
 def test_the_page_watches_a_bus_again_that_was_gone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live_module, "PAUSE", 0.0)
+    monkeypatch.setattr(live_buses, "PAUSE", 0.0)
     digest = ANALYSIS.system.digest
     server = BusServer()
-    live = LiveView(PUMP, ("ravenchart", server.channel))
+    live = LiveView(PUMP, ("ravenchart", [server.channel]))
     assert live.look(digest)["buses"][0]["gone"] is None
     server.close()
     within(lambda: live.look(digest)["buses"][0]["gone"])
     gone = live.look(digest)
     assert gone["buses"][0]["gone"] and "cannot be opened" not in gone["text"]
     again = BusServer()
-    live._named = ("ravenchart", again.channel)  # as if it were at the same port
+    live._buses._named = ("ravenchart", [again.channel])  # as if it were at the same port
     assert live.look(digest)["buses"][0]["gone"] is None
     live.close()
     again.close()

@@ -22,6 +22,7 @@ from ravenchart.tools import toolchain
 from tests.support.processes import ROOT
 
 ROBOT = ROOT / "examples" / "cartesian_robot"
+TWO_BUSES = ROOT / "examples" / "two_buses"
 TWO_NODES = ROOT / "examples" / "two_nodes"
 PAGE = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
 
@@ -99,6 +100,22 @@ def test_only_nodes_behind_the_first_are_cut_off() -> None:
     (one,) = scenarios.problems(parse_scenario(text), system)
     assert one.message == "`panel` cannot be cut off"
     assert one.hint == "name one of drive: it and those behind it are cut off"
+
+
+def test_an_event_of_one_of_several_buses_says_which() -> None:
+    system = checking.check(TWO_BUSES / "model.yaml", deadlines=False).system
+    events = (
+        "{at: 1 s, mend: true}, {at: 2 s, mend: true, on: spare}, {at: 3 s, cut: axle, on: cabin}"
+    )
+    text = f"scenario: x\nbus: [{events}]\nsteps: [{{wait: 1 s}}]\n"
+    nameless, unknown, first = scenarios.problems(parse_scenario(text), system)
+    assert nameless.message == "Two_Buses has 2 buses, and the event names none"
+    assert (
+        nameless.hint == unknown.hint.replace("write", "add") == "add `on: chassis` or `on: cabin`"
+    )
+    assert unknown.message == "there is no bus `spare`"
+    assert first.message == "`axle` cannot be cut off"
+    assert first.hint == "name one of gate, dash: it and those behind it are cut off"
 
 
 # --- The interpreter says what it leaves out -----------------------------------------------

@@ -36,7 +36,9 @@ PRINTED = pytest.CaptureFixture[str]
 @pytest.fixture
 def shell(far: FarEnd, request: pytest.FixtureRequest) -> Iterator[Shell]:
     words = robot()
-    with RemoteSystem(words, joined_peer(BusEnd("virtual", request.node.name), words.codec)) as it:
+    with RemoteSystem(
+        words, joined_peer({"bus": BusEnd("virtual", request.node.name)}, words.codec)
+    ) as it:
         yield Shell(it, Console(file=io.StringIO(), width=80, highlight=False))
 
 
@@ -231,7 +233,7 @@ def test_a_script_has_an_answer_for_programs(
     assert [one["passed"] for one in answer["result"]["commands"]] == [True, False]
     (found,) = answer["diagnostics"]
     assert (found["file"], found["line"], found["severity"]) == ("stdin", 2, "error")
-    assert "is the controller on this bus, at 500000 bit/s?" in found["hint"]
+    assert "is the controller on robot_bus, at 500000 bit/s?" in found["hint"]
 
 
 @pytest.mark.parametrize(
@@ -265,7 +267,7 @@ def stopped(controller: Ended) -> Callable[..., AbstractContextManager[StartedCo
     ) -> Iterator[StartedControllers]:
         if controller.killed:
             raise StartError("the controller did not open its bus within 10 s")
-        peer = joined_peer(BusEnd("virtual", "own"), words.codec)
+        peer = joined_peer({"bus": BusEnd("virtual", "own")}, words.codec)
         yield StartedControllers(peer, ended=[controller])
 
     return started

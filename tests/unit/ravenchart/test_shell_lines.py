@@ -40,7 +40,9 @@ def test_no_line_gets_another_exception(feature: str, monkeypatch: pytest.Monkey
     verbs = [verb for verb in USAGES if verb != "wait"]
     known = [*verbs, *words.commands, *words.messages, *words.observable(), *ODD]
     chance, done = random.Random(feature), 0
-    with RemoteSystem(words, joined_peer(BusEnd("virtual", feature, fd=True), words.codec)) as far:
+    with RemoteSystem(
+        words, joined_peer({"bus": BusEnd("virtual", feature, fd=True)}, words.codec)
+    ) as far:
         shell = Shell(far, Console(file=io.StringIO(), width=80))
         monkeypatch.setattr("ravenchart.running.shell.PATIENCE", 0.0)
         for _ in range(LINES):

@@ -35,7 +35,9 @@ is
         (Bit_Rate => Timing_Certificate.Link_Bit_Rate,
          Data_Rate => 0,
          Takes_Fd => False,
-         Recovery => Ravenchart.Can.On_Request));
+         Recovery => Ravenchart.Can.On_Request),
+      Bus_Number => 1,
+      Bus_Name => "LINK");
 
    use type Ravenchart.Can.Bits_Per_Second;
 
