@@ -120,7 +120,7 @@ def bus_named(buses: Sequence[Bus], name: str | None) -> Bus | None:
     return next((bus for bus in buses if bus.name == name), None)
 
 
-def several(buses: Sequence[Bus]) -> str:
+def carriers(buses: Sequence[Bus]) -> str:
     """The buses of a system with more than one, as a clause."""
     *first, last = (bus.name for bus in buses)
     return f"{', '.join(first)} or {last} may carry it"

@@ -41,7 +41,7 @@ from ravenchart.gen.model.system import Carried, Chain, System
 from ravenchart.gen.origins import Origin
 
 from .calls import awaited, published_by, readers, serving
-from .distribution import bus_named, several, which_bus
+from .distribution import bus_named, carriers, which_bus
 from .identifiers import OPEN
 
 NUMBER = IntegerType("Call_Number", BUILT_IN, 0, 255)
@@ -94,7 +94,7 @@ def obstacle(system: System, binding: Binding) -> Obstacle | None:
         hint = "declare a bus: between nodes, calls travel as its messages"
         return "RV-0606", at, ends, hint
     if bus_named(system.buses, binding.bus) is None:
-        return "RV-0606", at, f"{ends}; {several(system.buses)}", which_bus(system.buses)
+        return "RV-0606", at, f"{ends}; {carriers(system.buses)}", which_bus(system.buses)
     if is_read and binding.time_limit is None:
         message = f"{own} is read from {there}: the binding needs the key `time_limit`"
         return "RV-1214", at, message, "say how old it may be: `time_limit: ...`"

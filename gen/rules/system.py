@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from itertools import product
 
-from ravenchart.gen.derive.distribution import several, which_bus
+from ravenchart.gen.derive.distribution import carriers, which_bus
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.names import path_name
 from ravenchart.gen.language.quantities import shown
@@ -117,7 +117,7 @@ def connected_ends_agree(resolved: Resolved) -> Iterator[Diagnostic]:
                 f"is on {target.node}"
             )
             if connection.bus is None and len(system.buses) > 1:
-                message += f"; {several(system.buses)}"
+                message += f"; {carriers(system.buses)}"
                 hint = which_bus(system.buses)
             elif system.buses:
                 bus = connection.bus or system.buses[0].name

@@ -14,7 +14,7 @@ import can
 from can.interfaces import BACKENDS
 
 from .peer import BenchError, Codec, OnFrame, Peer, link_of, unrecorded
-from .several import bus_of
+from .several import joined_bus
 
 BACKENDS.setdefault("ravenchart", ("ravenchart.hw_can.bench.bus_client", "RavenchartBus"))
 """So that the interface also exists in a checkout that is on the path and not installed."""
@@ -86,7 +86,7 @@ def joined_peer(
         for bus, interface in interfaces.items():
             ends[bus] = opened_bus(interface)
             stack.callback(ends[bus].shutdown)
-        made = bus_of(ends)
+        made = joined_bus(ends)
         link = None
         if len(ends) == 1 and interface.name == "slcan" and "socket://" in interface.channel:
             link = link_of(made)

@@ -127,7 +127,7 @@ def codec_of(codecs: Mapping[str, Codec]) -> Codec:
     return JoinedCodec(codecs) if len(codecs) > 1 else next(iter(codecs.values()))
 
 
-def bus_of(ends: Mapping[str, can.BusABC]) -> can.BusABC:
+def joined_bus(ends: Mapping[str, can.BusABC]) -> can.BusABC:
     """The end of the only bus, or all of them together."""
     return JoinedBus(ends) if len(ends) > 1 else next(iter(ends.values()))
 
@@ -148,7 +148,7 @@ def joined_servers(channels: Mapping[str, str], codec: Codec) -> Peer:
             for end in ends.values():
                 end.shutdown()
             raise BenchError(f"no bus at {channel}: {fault}") from None
-    return Peer(bus_of(ends), codec)
+    return Peer(joined_bus(ends), codec)
 
 
 def by_bus(records: Mapping[str, OnFrame]) -> OnFrame:

@@ -442,7 +442,7 @@ def run_nodes(
     played: ScenarioResult | None = None
     ended: list[Ended] = []
     cores = sorted(os.sched_getaffinity(0))
-    with separate_cores(), served(analysis.system, controllers, plan, log) as channels:
+    with separate_cores(), bus_servers(analysis.system, controllers, plan, log) as channels:
         running: list[ControllerProcess] = []
         try:
             for process, joined in joining(analysis.system, controllers, traces, channels, cores):
@@ -471,7 +471,7 @@ def run_nodes(
 
 
 @contextmanager
-def served(
+def bus_servers(
     system: System, controllers: Sequence[Controller], plan: Scenario | None, log: Path | None
 ) -> Iterator[dict[str, str]]:
     """A server for each bus, for the time of a block; the channel of each, by bus.

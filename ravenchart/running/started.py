@@ -17,7 +17,7 @@ from ravenchart.hw_can.bench.several import joined_servers
 
 from . import bus_log
 from .process import ControllerProcess, Ended, separate_cores
-from .runs import Controller, joining, joins_a_server, served
+from .runs import Controller, bus_servers, joining, joins_a_server
 from .vocabulary import BusVocabulary
 
 
@@ -59,7 +59,7 @@ def started(
     with ExitStack() as stack:
         own = stack.enter_context(separate_cores(analysis.system.most_cores))
         if joins_a_server(analysis.system, len(controllers)):
-            channels = stack.enter_context(served(analysis.system, controllers, None, log))
+            channels = stack.enter_context(bus_servers(analysis.system, controllers, None, log))
             stack.callback(_stop, processes, ended, grace)
             for process, joined in joining(analysis.system, controllers, traces, channels, cores):
                 processes.append(process)

@@ -19,7 +19,7 @@ from ravenchart.building import checking, programs
 from ravenchart.paths import ROOT
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.remote import connect
-from ravenchart.running.runs import controller, joining, run_nodes, served
+from ravenchart.running.runs import bus_servers, controller, joining, run_nodes
 
 pytestmark = [pytest.mark.live, pytest.mark.alone]
 
@@ -58,7 +58,7 @@ def running(tmp_path: Path) -> Iterator[dict[str, str]]:
     controllers = tuple(controller(made) for made in programs.programs_of(checked))
     traces = [tmp_path / one.node for one in controllers]
     processes: list[ControllerProcess] = []
-    with served(checked.system, controllers, None, None) as channels:
+    with bus_servers(checked.system, controllers, None, None) as channels:
         try:
             for one, joined in joining(checked.system, controllers, traces, channels, [0, 1]):
                 processes.append(one)
