@@ -16,8 +16,9 @@ from ravenchart.failures import NOT_JUDGED, OK, WRONG, Unusable
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.runner import Progress
 from ravenchart.running.bus_runs import run_on_bus
+from ravenchart.running.controllers import joins_a_server
 from ravenchart.running.result import RunOutcome
-from ravenchart.running.runs import RunRequest, joins_a_server, run_model
+from ravenchart.running.runs import RunRequest, run_model
 
 from . import common, run_results, running
 

@@ -15,13 +15,9 @@ from ravenchart.building.programs import TRACE_MAP
 from ravenchart.failures import Unusable
 from ravenchart.hw_can.bench.runner import Progress
 from ravenchart.running import boards, scenarios
+from ravenchart.running.controllers import Controller, controller
 from ravenchart.running.result import RunOutcome
-from ravenchart.running.runs import (
-    Controller,
-    RunRequest,
-    controller,
-    run_on_this_machine,
-)
+from ravenchart.running.runs import RunRequest, run_on_this_machine
 from ravenchart.terminal import stages
 
 from . import common

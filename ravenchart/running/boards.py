@@ -23,6 +23,7 @@ from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scena
 from ravenchart.tools import children
 
 from . import board_bus, bus_log, runs
+from .controllers import Controller
 from .process import STOP_MARGIN, Ended
 from .result import RunOutcome
 from .traces.reports import BEGIN, SAID
@@ -69,7 +70,7 @@ def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> Run
     return _concluded(title, None, None, request, ended, problems)
 
 
-def _home(request: runs.RunRequest, controller: runs.Controller) -> Path:
+def _home(request: runs.RunRequest, controller: Controller) -> Path:
     """The folder that the board of a node writes to: its own where there are several."""
     several = len(request.controllers) > 1
     folder = request.folder.absolute() / controller.node if several else request.folder.absolute()
@@ -77,7 +78,7 @@ def _home(request: runs.RunRequest, controller: runs.Controller) -> Path:
     return folder
 
 
-def _report(request: runs.RunRequest, controller: runs.Controller | None = None) -> Path:
+def _report(request: runs.RunRequest, controller: Controller | None = None) -> Path:
     """The file of the serial line of a board, which is not there yet."""
     report = _home(request, controller or request.controllers[0]) / SERIAL
     report.unlink(missing_ok=True)
@@ -194,7 +195,7 @@ def command(
     return [part.format(**told) for part in emulator.command]
 
 
-def _map(controller: runs.Controller) -> tuple[str, str]:
+def _map(controller: Controller) -> tuple[str, str]:
     return controller.trace_json.read_text(encoding="utf-8"), controller.trace_json.name
 
 

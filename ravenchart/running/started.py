@@ -16,8 +16,8 @@ from ravenchart.hw_can.bench.peer import Peer
 from ravenchart.hw_can.bench.several import joined_servers
 
 from . import bus_log
+from .controllers import Controller, bus_servers, joining, joins_a_server
 from .process import ControllerProcess, Ended, separate_cores
-from .runs import Controller, bus_servers, joining, joins_a_server
 from .vocabulary import BusVocabulary
 
 

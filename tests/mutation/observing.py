@@ -38,7 +38,8 @@ from ravenchart.gen.model.component import Event, Port
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
-from ravenchart.running.runs import controller, run_controller, run_nodes
+from ravenchart.running.controllers import controller
+from ravenchart.running.runs import run_controller, run_nodes
 
 from .catalogue import mutants_of
 from .mutants import Mutant, text_of

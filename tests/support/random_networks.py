@@ -130,6 +130,47 @@ def _chain(
     return [*tasks, taker], frames, {frame.name: sender.name, taker.name: frame.name}
 
 
+def random_distribution(chance: random.Random) -> Network:
+    """Two to four cores, two or three buses, and chains over gateways between them."""
+    cores = [f"c{n}" for n in range(chance.randint(2, 4))]
+    buses = {f"b{n}": Bus(1) for n in range(chance.randint(2, 3))}
+    tasks = [task for core in cores for task in _tasks(chance, core, plain=False)[:3]]
+    sections = [
+        section
+        for core in cores
+        for section in _sections(chance, [t for t in tasks if t.core == core], core, plain=False)
+    ]
+    frames: dict[str, list[Frame]] = {bus: [] for bus in buses}
+    released: dict[str, str] = {}
+    for number in range(chance.randint(1, 3)):
+        period = chance.choice(PERIODS)
+        way = chance.sample([*buses], chance.randint(1, len(buses)))
+        before = ""
+        for hop, bus in enumerate((*way, None)):
+            name, core = f"x{number}.{hop}", chance.choice(cores)
+            task = Task(name, chance.randint(0, 9), period, 9 * period, max(1, period // 40))
+            tasks.append(replace(task, core=core))
+            if before:
+                released[name] = before
+            before = name
+            if bus is not None:
+                sent = f"f{number}.{hop}"
+                queue = chance.choice(("", core))
+                rank, cost = 10 * number + hop, max(5, period // 25)
+                jitter = chance.choice((0, 0, 7))
+                frames[bus].append(Frame(sent, rank, period, 9 * period, cost, jitter, queue))
+                released[sent] = before
+                before = sent
+    others = random.Random(chance.random())
+    for bus, some in frames.items():
+        for n in range(others.randint(0, 2)):
+            period = 2 * others.choice(PERIODS)
+            some.append(Frame(f"{bus}.o{n}", 100 + n, period, 3 * period, max(5, period // 10)))
+    homes = {bus: tuple(some) for bus, some in frames.items() if some}
+    used = {bus: one for bus, one in buses.items() if bus in homes}
+    return Network(tuple(tasks), homes, used, released, tuple(sections))
+
+
 def random_transactions(chance: random.Random) -> Network:
     """Two cores, perhaps a bus, and chains that come back to them; other tasks between."""
     names = ["c0", "c1", *["can"] * chance.randint(0, 1)]

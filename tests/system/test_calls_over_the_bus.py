@@ -14,7 +14,8 @@ import pytest
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.building import checking, generation, programs
 from ravenchart.paths import ROOT
-from ravenchart.running.runs import controller, run_nodes
+from ravenchart.running.controllers import controller
+from ravenchart.running.runs import run_nodes
 
 pytestmark = pytest.mark.alone
 

@@ -21,8 +21,9 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
+from ravenchart.running.controllers import controller
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.runs import controller, run_controller, run_nodes
+from ravenchart.running.runs import run_controller, run_nodes
 
 pytestmark = pytest.mark.alone
 

@@ -20,6 +20,7 @@ from ravenchart.building import checking, generation, programs, stacks
 from ravenchart.command_line import main
 from ravenchart.paths import ROOT
 from ravenchart.running import runs as run
+from ravenchart.running.controllers import controller
 from ravenchart.running.result import RunOutcome
 from tests.support.faults import shows
 from tests.support.modes import MODES
@@ -445,7 +446,7 @@ def test_of_two_nodes_the_one_whose_task_dies_fails_the_run_of_both(
 """
     table.write_text(text.replace(call, dies + call))
     result = run.run_nodes(
-        [run.controller(one) for one in made.values()],
+        [controller(one) for one in made.values()],
         checked.analysis,
         folder / "generated",
         None,

@@ -18,7 +18,7 @@ from ravenchart.building.checking import check
 from ravenchart.building.generation import write_program
 from ravenchart.building.programs import programs_of
 from ravenchart.running import server
-from ravenchart.running.runs import controller
+from ravenchart.running.controllers import controller
 from tests.support.faults import shows
 from tests.support.processes import LAUNCHER, PYTHON, ROOT, Marked
 

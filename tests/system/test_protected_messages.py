@@ -23,8 +23,9 @@ from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.hw_can.bench.peer import BenchError, Codec
 from ravenchart.hw_can.bench.protection import Wrong
 from ravenchart.paths import ROOT
+from ravenchart.running.controllers import controller
 from ravenchart.running.result import RunOutcome
-from ravenchart.running.runs import controller, run_controller
+from ravenchart.running.runs import run_controller
 from tests.support.ada_programs import ran
 from tests.support.on_bus import runner
 

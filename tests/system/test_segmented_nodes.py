@@ -22,8 +22,9 @@ from ravenchart.gen.model.buses import Message
 from ravenchart.hw_can.bench.bus_client import RavenchartBus
 from ravenchart.paths import ROOT
 from ravenchart.running import server as bus
+from ravenchart.running.controllers import Controller, controller
 from ravenchart.running.process import ControllerProcess
-from ravenchart.running.runs import Controller, controller, run_nodes
+from ravenchart.running.runs import run_nodes
 
 pytestmark = [pytest.mark.alone, pytest.mark.slow]
 

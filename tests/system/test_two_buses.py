@@ -17,9 +17,10 @@ import pytest
 
 from ravenchart.building import checking, programs
 from ravenchart.paths import ROOT
+from ravenchart.running.controllers import bus_servers, controller, joining
 from ravenchart.running.process import ControllerProcess
 from ravenchart.running.remote import connect
-from ravenchart.running.runs import bus_servers, controller, joining, run_nodes
+from ravenchart.running.runs import run_nodes
 
 pytestmark = [pytest.mark.live, pytest.mark.alone]
 

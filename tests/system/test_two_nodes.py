@@ -19,8 +19,9 @@ from ravenchart.building import checking, generation, programs
 from ravenchart.commands import simulate
 from ravenchart.hw_can.bench.peer import Codec
 from ravenchart.paths import ROOT
+from ravenchart.running.controllers import controller
 from ravenchart.running.result import RunOutcome
-from ravenchart.running.runs import RunRequest, controller, run_model
+from ravenchart.running.runs import RunRequest, run_model
 from tests.support import live
 from tests.support.faults import shows
 from tests.support.two_nodes import by_chart

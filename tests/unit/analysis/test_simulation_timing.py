@@ -25,7 +25,12 @@ from ravenchart.analysis.simulation.phases import (
     PhaseScenario,
 )
 from tests.support import worst_phases
-from tests.support.random_networks import random_network, with_epochs, with_offsets
+from tests.support.random_networks import (
+    random_distribution,
+    random_network,
+    with_epochs,
+    with_offsets,
+)
 from tests.support.random_phases import chance_scenario
 
 SYSTEMS = 1_000
@@ -147,6 +152,25 @@ def test_no_random_system_is_observed_above_its_bounds() -> None:
                         best = found.best[name]
                         assert longest <= best + one.bound, (seed, name, row)
     assert compared > 5 * SYSTEMS
+
+
+@pytest.mark.slow
+def test_no_random_system_of_several_cores_and_buses_is_observed_above_its_bounds() -> None:
+    """Chains over gateways, each from its first event on."""
+    compared = bounded = far = 0
+    for seed in range(SYSTEMS):
+        chance = random.Random(seed)
+        network = random_distribution(chance)
+        found = holistic.analyse(network)
+        until = 8 * max(item.period for item in network.items().values())
+        seen = simulate(network, chance_scenario(network, chance, until), until)
+        for name, longest in seen.longest.items():
+            bound = found.from_event(name)
+            assert bound is None or longest <= bound, (seed, name, longest, bound)
+            compared += 1
+            bounded += bound is not None
+            far += bound is not None and name in {"x0.2", "x1.2", "x2.2"}
+    assert bounded > compared // 2 and far > 20
 
 
 @pytest.mark.slow

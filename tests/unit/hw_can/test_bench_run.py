@@ -19,10 +19,10 @@ from ravenchart.hw_can.bench.forms import TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError
 from ravenchart.hw_can.bench.scenario import ScenarioError, parse_scenario
 from ravenchart.running import expected, judge, summary
+from ravenchart.running.controllers import Controller
 from ravenchart.running.process import Ended
 from ravenchart.running.result import RunOutcome
 from ravenchart.running.runs import (
-    Controller,
     RunRequest,
     print_summary,
     run_alone,
