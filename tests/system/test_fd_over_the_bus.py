@@ -52,10 +52,10 @@ def test_frames_of_both_formats_go_between_nodes_and_from_the_bench(
     real = bus.running
 
     def running(
-        *words: str, log: Path | None, beside: Path
+        *words: str, log: Path | None, beside: Path, bus: str
     ) -> AbstractContextManager[tuple[subprocess.Popen[str], str]]:
         told.extend(words)
-        return real(*words, log=log, beside=beside)
+        return real(*words, log=log, beside=beside, bus=bus)
 
     monkeypatch.setattr(bus, "running", running)
     checked = checking.check(folder / "model.yaml")

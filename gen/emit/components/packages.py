@@ -38,8 +38,8 @@ from ravenchart.gen.emit.language.terms import (
     effective,
     emit_flow,
     expressions_in,
-    flow_names,
     flow_operators,
+    reads_first,
 )
 from ravenchart.gen.language.terms import RecordType, Type, always, named
 from ravenchart.gen.model.component import Activity, Component, Data, Direction, Port
@@ -242,7 +242,7 @@ def emit_activities(system: System, component: Component, header: str) -> tuple[
 
 
 def _write_mode(activity: Activity, data: Data) -> str:
-    """``in out`` for what is read as well, or not always set; ``out`` otherwise."""
+    """``in out`` for what is read first, or not always set; ``out`` otherwise."""
     if activity.flow is None:
         return "in out" if data.name in activity.reads else "out"
     if data.name in needed_before(activity):
@@ -250,7 +250,7 @@ def _write_mode(activity: Activity, data: Data) -> str:
     parts = {data.name}
     if isinstance(data.type, RecordType):
         parts = {f"{data.name}.{field.name}" for field in data.type.fields}
-    sure = parts <= always(activity.flow) and data.name not in flow_names(activity.flow)
+    sure = parts <= always(activity.flow) and not reads_first(activity.flow, data.name)
     return "out" if sure else "in out"
 
 

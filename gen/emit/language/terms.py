@@ -188,6 +188,20 @@ def flow_names(flow: m.Flow) -> set[str]:
     return {name for expression in expressions_in(flow) for name in names_read(expression)}
 
 
+def reads_first(flow: m.Flow, data: str) -> bool:
+    """Whether a flow may read a data item before it has set it."""
+    for action in flow:
+        if isinstance(action, m.If):
+            own = data in names_read(action.condition)
+            if own or reads_first(action.then, data) or reads_first(action.otherwise, data):
+                return True
+        elif data in flow_names((action,)):
+            return True
+        if data in m.always((action,)):
+            return False
+    return False
+
+
 def certain_sends(flow: m.Flow) -> set[str]:
     """The ports that a flow sends on whatever way it takes."""
     ports: set[str] = set()

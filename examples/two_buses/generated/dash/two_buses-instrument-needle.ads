@@ -16,8 +16,8 @@ is
    --    move: Resting -> Moving on Came
    type Selection is
      (Initial_Entry,
-      Rest,           --  [rest] model.yaml:117
-      Move,           --  [move] model.yaml:118
+      Rest,           --  [rest] model.yaml:113
+      Move,           --  [move] model.yaml:114
       None);
 
    subtype Firing is Selection range Initial_Entry .. Move;

@@ -19,8 +19,8 @@ is
    --  [Instrument.Needle.states]
    package Needle_States is
       type Leaf is
-        (Moving,   --  [Moving] model.yaml:114
-         Resting   --  [Resting] model.yaml:115
+        (Moving,   --  [Moving] model.yaml:110
+         Resting   --  [Resting] model.yaml:111
         );
    end Needle_States;
 

@@ -12,7 +12,7 @@ is
      (Wheel             : Speed_Watch.Wheel_View;
       Spare             : Speed_Watch.Spare_View;
       Limit             : Two_Buses.Speed;
-      Speed             : in out Two_Buses.Speed;
+      Speed             : out Two_Buses.Speed;
       Shown             : out Two_Buses.Speed;
       Send_Shown        : out Boolean;
       Raise_Too_Fast    : out Boolean;

@@ -21,12 +21,12 @@ is
    --    blind: Hearing -> Blind when not fresh(wheel) and not fresh(spare)
    type Selection is
      (Initial_Entry,
-      Cabin_Lost,     --  [cabin_lost] model.yaml:76
-      Cabin_Back,     --  [cabin_back] model.yaml:77
-      Chassis_Lost,   --  [chassis_lost] model.yaml:78
-      Chassis_Back,   --  [chassis_back] model.yaml:79
-      Heard,          --  [heard] model.yaml:75
-      Blind,          --  [blind] model.yaml:80
+      Cabin_Lost,     --  [cabin_lost] model.yaml:72
+      Cabin_Back,     --  [cabin_back] model.yaml:73
+      Chassis_Lost,   --  [chassis_lost] model.yaml:74
+      Chassis_Back,   --  [chassis_back] model.yaml:75
+      Heard,          --  [heard] model.yaml:71
+      Blind,          --  [blind] model.yaml:76
       None);
 
    subtype Firing is Selection range Initial_Entry .. Blind;

@@ -17,8 +17,8 @@ is
    --    calm: Warning -> Quiet on Slow_Enough
    type Selection is
      (Initial_Entry,
-      Warn,           --  [warn] model.yaml:90
-      Calm,           --  [calm] model.yaml:95
+      Warn,           --  [warn] model.yaml:86
+      Calm,           --  [calm] model.yaml:91
       None);
 
    subtype Firing is Selection range Initial_Entry .. Calm;

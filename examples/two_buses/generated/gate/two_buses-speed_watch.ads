@@ -19,21 +19,21 @@ is
    --  [Speed_Watch.Paths.states]
    package Paths_States is
       type Leaf is
-        (Blind,       --  [Blind] model.yaml:67
-         Both,        --  [Both] model.yaml:71
-         By_Chassis,  --  [By_Chassis] model.yaml:72
-         By_Cabin     --  [By_Cabin] model.yaml:73
+        (Blind,       --  [Blind] model.yaml:63
+         Both,        --  [Both] model.yaml:67
+         By_Chassis,  --  [By_Chassis] model.yaml:68
+         By_Cabin     --  [By_Cabin] model.yaml:69
         );
 
-      --  [Hearing] model.yaml:68
+      --  [Hearing] model.yaml:64
       subtype Hearing is Leaf range Both .. By_Cabin;
    end Paths_States;
 
    --  [Speed_Watch.Watch.states]
    package Watch_States is
       type Leaf is
-        (Quiet,    --  [Quiet] model.yaml:87
-         Warning   --  [Warning] model.yaml:88
+        (Quiet,    --  [Quiet] model.yaml:83
+         Warning   --  [Warning] model.yaml:84
         );
    end Watch_States;
 
