@@ -57,6 +57,8 @@ TOLD = "{send: told, with: level}"
     ],
 )
 def test_what_is_set_before_it_is_read_has_mode_out(body: str, mode: str, tmp_path: Path) -> None:
+    if TOLD not in body:
+        body = f"{body[:-1]}, {{send: told, with: height}}]"
     model = tmp_path / "model.yaml"
     model.write_text(MODEL.replace("BODY", body), encoding="utf-8")
     system = checking.check(model).system
