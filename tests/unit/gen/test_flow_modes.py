@@ -49,7 +49,7 @@ TOLD = "{send: told, with: level}"
         (f"[{SET}]", "out"),
         (f"[{SET}, {TOLD}]", "out"),
         (f"[{TOLD}, {SET}]", "in out"),
-        ("[{set: level, to: max(level, height)}]", "in out"),
+        ('[{set: level, to: "max(level, height)"}]', "in out"),
         (f"[{{if: height > 3, then: [{SET}]}}, {TOLD}]", "in out"),
         (f"[{{if: height > 3, then: [{SET}], else: [{{set: level, to: 0}}]}}, {TOLD}]", "out"),
         (f"[{{if: height > 3, then: [{TOLD}]}}, {SET}]", "in out"),
