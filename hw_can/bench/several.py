@@ -152,7 +152,7 @@ def joined_servers(channels: Mapping[str, str], codec: Codec) -> Peer:
 
 
 def by_bus(records: Mapping[str, OnFrame]) -> OnFrame:
-    """What gets each frame with the function for its bus; of one bus it gets all."""
+    """A function that hands each frame to that of its bus; of one bus all frames are its own."""
     if len(records) == 1:
         return next(iter(records.values()))
 
