@@ -60,35 +60,48 @@ class Carrier:
         left: list[Connection] = []
         found = {message.name.lower(): message for message in messages}
         for connection in connections:
-            own = next((m for m in found.values() if _may_carry(m, connection)), None)
+            bus = self._bus_of(connection, messages)
+            own = next((m for m in found.values() if _carries(m, connection, bus)), None)
             if not self._is_across(connection):
                 left.append(connection)
             elif own is not None:
                 targets = (*own.targets, connection.target)
                 found[own.name.lower()] = replace(own, targets=targets)
             else:
-                made = self._message(connection)
-                other = None if made is None else found.get(made.name.lower())
-                if made is not None and other is not None and other.source == made.source:
-                    made = replace(made, name=f"{made.name}_{made.bus}")
-                if made is None or made.name.lower() in found:
+                made = self._message(connection, bus, found)
+                if made is None:
                     left.append(connection)
                 else:
                     found[made.name.lower()] = made
         return tuple(left), tuple(found.values())
 
+    def _bus_of(self, connection: Connection, messages: Sequence[Message]) -> Bus | None:
+        """The bus of a connection: the one that it names, the only one, or that of a message.
+
+        That is the only bus on which the model has a message with its source.
+        """
+        named = bus_named(self.buses, connection.bus)
+        on = {message.bus for message in messages if message.source == connection.source}
+        return named or (bus_named(self.buses, *on) if len(on) == 1 else None)
+
     def _is_across(self, connection: Connection) -> bool:
         source, target = connection.source.instance, connection.target.instance
         return self.instances[source].node != self.instances[target].node
 
-    def _message(self, connection: Connection) -> Message | None:
+    def _message(
+        self, connection: Connection, bus: Bus | None, found: Mapping[str, Message]
+    ) -> Message | None:
         """A message with the value of the connection's source, laid out as small as it is."""
         end = connection.source
         component = self.instances[end.instance].component
         name, type_ = f"{path_name(end.instance)}_{end.name}", component.port(end.name).type
         period = component.send_period(end.name)
-        bus = bus_named(self.buses, connection.bus)
-        if bus is None or period is None or problem_of(name) is not None:
+        if bus is None or period is None:
+            return None
+        other = found.get(name.lower())
+        if other is not None and other.source == end:
+            name += f"_{bus.name}"
+        if name.lower() in found or problem_of(name) is not None:
             return None
         signals = signals_of(type_)
         fd = bus.data_rate is not None and not fits_classic(signals)
@@ -108,9 +121,9 @@ class Carrier:
         )
 
 
-def _may_carry(message: Message, connection: Connection) -> bool:
-    """Whether a message has the source of a connection, on the bus that this names if any."""
-    return message.source == connection.source and connection.bus in {None, message.bus}
+def _carries(message: Message, connection: Connection, bus: Bus | None) -> bool:
+    """Whether a message has the source of a connection, on its bus."""
+    return bus is not None and (message.source, message.bus) == (connection.source, bus.name)
 
 
 def bus_named(buses: Sequence[Bus], name: str | None) -> Bus | None:

@@ -471,7 +471,7 @@ class ModelFile(Element):
     bindings: list[BindingForm] | None = optional("Providers of the required interfaces.")
     components: dict[Name, ComponentForm] | None = optional("Components.")
     nodes: dict[Name, NodeForm] | None = optional("Nodes: one or several, and a program for each.")
-    buses: dict[Name, BusForm] | None = optional("The CAN bus: at most one.")
+    buses: dict[Name, BusForm] | None = optional("The CAN buses, at most eight.")
     instances: dict[Name, InstanceForm] | None = optional("Instances of components.")
     connections: list[ConnectionForm] | None = optional(
         "Connections of ports, on one node or between two."

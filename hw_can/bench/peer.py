@@ -86,6 +86,10 @@ class Codec:
         """Whether the DBC has a message of that name."""
         return name in self._names.values()
 
+    def knows(self, frame: can.Message) -> bool:
+        """Whether the DBC has a message with the identifier of a frame."""
+        return (frame.arbitration_id, frame.is_extended_id) in self._names
+
     def fields(self, name: str) -> tuple[str, ...]:
         """The fields of a message; BenchError when the DBC has none of that name."""
         return tuple(s.name for s in self._message(name).signals)

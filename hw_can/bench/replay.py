@@ -10,6 +10,7 @@ from pathlib import Path
 import can
 
 from .peer import BenchError, Codec
+from .several import JoinedCodec
 
 SUFFIXES = (".asc", ".blf", ".log")
 """Vector's ASC and BLF, and the format of candump."""
@@ -31,6 +32,19 @@ def read_log(path: Path) -> list[Timed]:
         raise BenchError(f"{path} is no log of this format: {fault}") from None
     frames.sort(key=lambda frame: frame.timestamp)
     return [(frame.timestamp - frames[0].timestamp, frame) for frame in frames]
+
+
+def log_for(path: Path, codec: Codec) -> list[Timed]:
+    """The same with the bus of each frame, where the file is called after one of several buses.
+
+    The formats BLF and ASC have numbers for channels only, so a run names a file ``run-cabin.blf``.
+    """
+    log = read_log(path)
+    for bus in codec.codecs if isinstance(codec, JoinedCodec) else ():
+        if path.stem.lower().endswith(f"-{bus.lower()}"):
+            for _, frame in log:
+                frame.channel = bus
+    return log
 
 
 def fault_of_log(path: Path) -> str | None:

@@ -15,7 +15,7 @@ from .drives import AxisTrack, Bench, press
 from .peer import BenchError, FrameValues, Peer, Value
 from .plant_stations import PlantStation, PlantTrack, plant_of
 from .plants import PlantFaultError
-from .replay import from_outside, read_log
+from .replay import from_outside, log_for
 from .scenario import Scenario
 from .steps import (
     Expect,
@@ -218,7 +218,7 @@ class _Runner:
     def _replay(self, step: Replay) -> tuple[bool, str]:
         """Send all frames of the log that come from outside, each at its time."""
         bench = self._bench
-        log = read_log(self._scenario.file_of(step))
+        log = log_for(self._scenario.file_of(step), bench.peer.codec)
         simulated = self._scenario.simulated()
         frames, began = from_outside(log, bench.peer.codec, simulated), bench.now
         bench.replayed.extend((began + at, frame) for at, frame in frames)

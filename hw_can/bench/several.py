@@ -57,18 +57,15 @@ class JoinedCodec(Codec):
     def from_outside(self, frame: can.Message) -> str | None:
         """The message that the frame of a log is, if no node sends it; else None.
 
-        Where the log does not name the bus, that is the only bus which has such a message. The
-        frame then has the name of the bus as its channel.
+        Its channel is the name of a bus, or becomes that of the only one which has its identifier.
+        A frame of a bus that nothing names is of no message.
         """
-        codecs = self.codecs
-        if frame.channel in codecs:
-            codecs = {str(frame.channel): codecs[str(frame.channel)]}
-        found = [(bus, codec.from_outside(frame)) for bus, codec in codecs.items()]
-        known = [(bus, name) for bus, name in found if name is not None]
-        if len(known) != 1:
-            return None
-        frame.channel = known[0][0]
-        return known[0][1]
+        if frame.channel not in self.codecs:
+            known = [bus for bus, codec in self.codecs.items() if codec.knows(frame)]
+            if len(known) != 1:
+                return None
+            frame.channel = known[0]
+        return self.codecs[str(frame.channel)].from_outside(frame)
 
     def _of(self, name: str) -> tuple[str, Codec]:
         """The bus with the message, and its codec."""

@@ -12,6 +12,7 @@ that hands a value on comes before the row that takes it.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -26,7 +27,7 @@ from ravenchart.analysis.units import duration
 from ravenchart.gen.derive.completion import completed
 from ravenchart.gen.derive.sharing import too_long
 from ravenchart.gen.language.terms import Ns
-from ravenchart.gen.model.system import Processor, Slot, System
+from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .search import SET, Judged, Rank, Ranked, rank_of_tables, searched
 
@@ -255,8 +256,15 @@ def _reactions(processor: Processor) -> Iterator[tuple[str, tuple[str, ...]]]:
 
 
 def _written(system: System) -> Iterator[Processor]:
-    """The processors as a model has them: one copy of what only serves a bus, for all its nodes."""
+    """The processors as a model has them: one copy of what only serves a bus, for all its nodes.
+
+    Where some of its nodes have the rows in other tables, each copy stays and names its node.
+    """
     seen: set[str] = set()
+    homes: defaultdict[str, set[str]] = defaultdict(set)
+    for one in system.processors:
+        if all(slot.of_bus for slot in one.slots):
+            homes[one.name.removesuffix(f"_{one.node}")].add(one.node)
     for processor in system.processors:
         suffix = f"_{processor.node}"
         slots = tuple(
@@ -264,13 +272,22 @@ def _written(system: System) -> Iterator[Processor]:
             for slot in processor.slots
         )
         one = replace(processor, slots=slots)
-        if one.name.endswith(suffix) and all(slot.of_bus for slot in slots):
-            name = one.name.removesuffix(suffix)
+        name = one.name.removesuffix(suffix)
+        serves = one.name.endswith(suffix) and all(slot.of_bus for slot in slots)
+        if serves and homes[name] == _served_nodes(system, processor):
             if name not in seen:
                 yield replace(one, name=name, node="")
             seen.add(name)
         else:
             yield one
+
+
+def _served_nodes(system: System, processor: Processor) -> set[str]:
+    """The nodes on which the model would have a copy of a processor that only serves a bus."""
+    bus, work = processor.slots[0].owner, processor.slots[0].work
+    if work is Work.BUS_RECEIVE:
+        return {node.name for node in system.nodes if system.received(bus, node.name)}
+    return {node.name for node in system.nodes if system.joins(bus, node.name)}
 
 
 def stack_text(size: int) -> str:

@@ -36,7 +36,8 @@ def execute(options: argparse.Namespace) -> int:
     """Print it; the exit status."""
     system = common.checked(options, deadlines=False).system
     buses = {bus.name: bus for bus in system.buses}
-    name = options.bus or (next(iter(buses)) if len(buses) == 1 else None)
+    given = {bus.lower(): bus for bus in buses}.get((options.bus or "").lower())
+    name = given or options.bus or (next(iter(buses)) if len(buses) == 1 else None)
     if not buses:
         raise Refused(f"{options.model}: error: the model has no bus")
     if name not in buses:

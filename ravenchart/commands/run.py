@@ -45,7 +45,7 @@ def execute(options: argparse.Namespace) -> int:
         execute, request = _started(options, checked)
     else:
         execute = partial(run_on_bus, interfaces)
-        request = running.on_bus(options, checked, options.report, options.log)
+        request = running.on_bus(options, checked, [*interfaces], options.report, options.log)
     try:
         outcome = run_model(request, refuse=options.answer.fail, execute=execute)
     except BenchError as problem:

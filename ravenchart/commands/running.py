@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -31,7 +32,7 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare what is run, where and for how long."""
     common.add_model(sub)
     common.add_target(sub)
-    sub.add_argument("--scenario", type=Path, help="play this scenario on its CAN bus")
+    sub.add_argument("--scenario", type=Path, help="play this scenario on its CAN buses")
     sub.add_argument(
         "--seconds",
         type=float,
@@ -97,14 +98,18 @@ def controllers(
 
 
 def on_bus(
-    options: argparse.Namespace, checked: Checked, folder: Path | None, log: Path | None
+    options: argparse.Namespace,
+    checked: Checked,
+    buses: Sequence[str],
+    folder: Path | None,
+    log: Path | None,
 ) -> RunRequest:
-    """The scenario alone, for a controller that runs already; Unusable without one."""
+    """The scenario alone, for a controller that runs already on these buses; Unusable without."""
     if options.target != variants.NATIVE:
         raise Unusable("--interface and --target exclude each other: nothing is built")
     if options.scenario is None:
         raise Unusable("--interface needs --scenario: what is to be played there")
-    scenarios.checked(options.scenario, checked.system, simulated=False)
+    scenarios.checked(options.scenario, checked.system, buses)
     home = programs.build_home(checked, "interface")
     return RunRequest(
         checked.analysis,

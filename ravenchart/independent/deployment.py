@@ -153,16 +153,18 @@ class Deployment:
 
     def _messages(self) -> list[Message]:
         found = [self._message(name, form) for name, form in self.model.section("messages").maps()]
+        declared = list(found)
         for wire in self.model.connections:
             source, target = wire.text("from") or "", wire.text("to") or ""
             source, target = self._end(source), self._end(target)
             if self.node_of(source) == self.node_of(target):
                 continue
-            bus = self.buses.name(wire.text("bus") or "")
             sent = [m for m in found if (m.source or "").lower() == source.lower()]
-            own = next((m for m in sent if bus in {None, m.bus}), None)
+            on = [m.bus for m in sent if m in declared] or [*self.buses, ""]
+            bus = self.buses.name(wire.text("bus") or "") or on[0]
+            own = next((m for m in sent if m.bus == bus), None)
             if own is None:
-                own = self._carried(source, bus or next(iter(self.buses), ""))
+                own = self._carried(source, bus)
                 if any(m.name.lower() == own.name.lower() for m in sent):
                     own.name += f"_{own.bus}"
                 found.append(own)

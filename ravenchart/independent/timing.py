@@ -58,7 +58,8 @@ class Timing:
         for task in self.deployment.tasks:
             self._facts(task)
         for name in self.deployment.buses:
-            if any(m.bus == name for m in self.deployment.messages):
+            used = any(m.bus == name for m in self.deployment.messages)
+            if used or len(self.deployment.nodes) > 1:  # one node has the buses that it uses
                 self._bus(name)
         for message in self.deployment.messages:
             self._message(message)

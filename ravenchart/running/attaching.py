@@ -38,6 +38,10 @@ def interfaces_of(system: System, name: str, channels: Sequence[str]) -> dict[st
         bus, channel = _of_bus(system, text)
         if bus.name in found:
             raise Unusable(f"--channel {text}: {bus.name} has a channel already")
+        other = next((one for one, end in found.items() if end.channel == channel), None)
+        if other is not None or not channel:
+            why = "no channel" if other is None else f"the channel of {other}"
+            raise Unusable(f"--channel {text}: {bus.name} cannot have {why}")
         data_rate = (bus.data_rate or bus.bit_rate) if bus.takes_fd else None
         found[bus.name] = BusEnd(name, channel, bus.bit_rate, data_rate, fd=bus.takes_fd)
     return found

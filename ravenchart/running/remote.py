@@ -36,7 +36,7 @@ from ravenchart.hw_can.bench.drives import Bench, Station, press
 from ravenchart.hw_can.bench.forms import DriveForm
 from ravenchart.hw_can.bench.interfaces import BusEnd
 from ravenchart.hw_can.bench.peer import BenchError, FrameValues, MalformedFrameError, Peer, Value
-from ravenchart.hw_can.bench.replay import from_outside, read_log
+from ravenchart.hw_can.bench.replay import from_outside, log_for
 
 from . import bus_log, monitoring, scenarios
 from .attaching import attached, interfaces_of, vocabulary_at
@@ -263,7 +263,7 @@ class RemoteSystem:
         Returns when the last one is sent. Raises BenchError for a file that is no log.
         """
         drives = frozenset(one.form.feedback for one in self._bench.stations.values())
-        frames = from_outside(read_log(log), self.vocabulary.codec, drives)
+        frames = from_outside(log_for(log, self.vocabulary.codec), self.vocabulary.codec, drives)
 
         def planned() -> None:
             now = self._bench.now

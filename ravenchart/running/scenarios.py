@@ -9,7 +9,7 @@ ports are those of the model.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from cantools.database.can import Message as DbcMessage
@@ -26,10 +26,11 @@ from ravenchart.hw_can.bench.drives import FEEDBACK_FIELDS, SET_POINT_FIELDS
 from ravenchart.hw_can.bench.forms import BusEvent, Cut, Expected, Lost, Missed, Overran, TraceCheck
 from ravenchart.hw_can.bench.peer import BenchError, Value
 from ravenchart.hw_can.bench.reading import MISFIT, UNKNOWN, Source, rendered
-from ravenchart.hw_can.bench.replay import from_outside, read_log
+from ravenchart.hw_can.bench.replay import from_outside, log_for
 from ravenchart.hw_can.bench.scenario import Scenario, ScenarioError, load_scenario
 from ravenchart.hw_can.bench.steps import Replay, SendStep, WaitFor
 
+from .controllers import joins_a_server
 from .scenario_plants import check_plants
 from .vocabulary import BusVocabulary
 
@@ -39,10 +40,11 @@ VALUE = "RV-1305"
 """A value that the field of a message does not have."""
 
 
-def checked(path: Path, system: System, *, simulated: bool = True) -> Scenario:
+def checked(path: Path, system: System, buses: Sequence[str] | None = None) -> Scenario:
     """The scenario in a file; Refused with everything that does not fit it or the model.
 
-    ``simulated``: the bus is, so that events on it can be had.
+    ``buses`` are those that have an interface; without them all are simulated, so that events on
+    them can be had.
     """
     try:
         scenario = load_scenario(path)
@@ -50,8 +52,8 @@ def checked(path: Path, system: System, *, simulated: bool = True) -> Scenario:
         raise Refused(str(fault)) from None
     source = scenario.source
     assert source is not None
-    found = problems(scenario, system)
-    if scenario.bus_events and not (simulated or found):
+    found = problems(scenario, system, buses)
+    if scenario.bus_events and buses is not None and not found:
         told = "`bus` is for the simulated bus, not for one at `--interface`"
         source.wrong(MISFIT, ("bus",), told, "remove `bus`, or run it without", key=True)
         found = source.found
@@ -60,14 +62,17 @@ def checked(path: Path, system: System, *, simulated: bool = True) -> Scenario:
     return scenario
 
 
-def problems(scenario: Scenario, system: System) -> list[Diagnostic]:
+def problems(
+    scenario: Scenario, system: System, buses: Sequence[str] | None = None
+) -> list[Diagnostic]:
     """Errors of a scenario: names that the model does not have, and values that do not fit."""
     source = scenario.source
     assert source is not None
     if not system.buses:
         message = f"{system.name} has no bus for a scenario to play on"
         return [error(UNKNOWN, source.tree.origin, message, hint="run it without `--scenario`")]
-    check = _Check(source, system, BusVocabulary.of(system))
+    there = [bus for bus in system.buses if buses is None or bus.name in buses]
+    check = _Check(source, system, BusVocabulary.of(system, there))
     check.drives(scenario)
     check_plants(scenario, source, check.signal, tuple(check.vocabulary.outside()))
     for index, step in enumerate(scenario.steps):
@@ -137,7 +142,7 @@ class _Check:
     def replay(self, step: Replay, scenario: Scenario, path: FormPath) -> None:
         """A log with a frame that the bench can send."""
         drives = scenario.simulated()
-        if not from_outside(read_log(scenario.file_of(step)), self.codec, drives):
+        if not from_outside(log_for(scenario.file_of(step), self.codec), self.codec, drives):
             told = f"no frame of {step.replay} is a message that comes from outside the model"
             outside = self.vocabulary.outside()
             names = ", ".join(name for name in outside if name not in drives) or "none"
@@ -161,6 +166,10 @@ class _Check:
         if name not in self.messages:
             told = f"there is no message `{name}` on {self.vocabulary.where}"
             hint = f"the messages are {', '.join(self.messages)}"
+            away = next((m.bus for m in self.system.messages if m.name == name), None)
+            if away is not None:
+                told = f"`{name}` is on {away}, which has no channel"
+                hint = f"add `--channel {away}=...`"
             self.source.wrong(UNKNOWN, path, told, hint)
         return self.messages.get(name)
 
@@ -259,7 +268,7 @@ class _Check:
     def bus(self, scenario: Scenario) -> None:
         """Buses that there are, and nodes that can be cut off: all but the first on a bus."""
         nodes = [node.name for node in self.system.nodes]
-        if scenario.bus_events and len(nodes) == 1:
+        if scenario.bus_events and not joins_a_server(self.system, len(nodes)):
             told = f"`bus` is for a system with several nodes, and {self.system.name} has one"
             self.source.wrong(MISFIT, ("bus",), told, "remove `bus`", key=True)
             return
@@ -270,7 +279,9 @@ class _Check:
                 continue
             if event.cut.lower() not in map(str.lower, homes[1:]):
                 told = f"`{event.cut}` cannot be cut off"
-                hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
+                hint = f"{bus} has one node"
+                if homes[1:]:
+                    hint = f"name one of {', '.join(homes[1:])}: it and those behind it are cut off"
                 self.source.wrong(UNKNOWN, ("bus", index, "cut"), told, hint)
 
     def _bus_of(self, event: BusEvent, index: int) -> str:
@@ -308,11 +319,12 @@ class _Check:
     def losses(self) -> list[str]:
         """The names of what a run may lose."""
         nodes = [node.name for node in self.system.nodes]
-        homes = [f"{node}." for node in nodes] if len(nodes) > 1 else [""]
+        named = joins_a_server(self.system, len(nodes))
         return [
-            f"{home}{bus.name}.{count}"
-            for home in homes
+            f"{f'{node}.' if named else ''}{bus.name}.{count}"
+            for node in nodes
             for bus in self.system.buses
+            if self.system.joins(bus.name, node)
             for count in LOSSES
         ]
 

@@ -53,16 +53,24 @@ class LiveBuses:
         if len(works) == wanted or now < self._next:
             return
         self._next = now + PAUSE
+        faults: list[str] = []
         try:
-            for bus, end in self._ends(checked, runs=runs, rings=rings).items():
-                if bus not in works:
+            ends = self._ends(checked, runs=runs, rings=rings)
+        except Failure as problem:
+            ends = {}
+            faults.append(_said(problem))
+        for bus, end in ends.items():
+            if bus not in works:
+                try:
                     watch = BusWatch(checked.analysis, end, checked.system.bus(bus))
+                except Failure as problem:
+                    if bus not in self._watches:  # else its table says that it is gone
+                        faults.append(_said(problem))
+                else:
                     if bus in self._watches:
                         self._watches[bus].close()
-                    self._watches[bus], self.text = watch, ""
-        except Failure as problem:
-            if not self._watches:
-                self.text = str(problem).removeprefix("ravenchart: error: ")
+                    self._watches[bus] = watch
+        self.text = " ".join(faults)
 
     def _ends(self, checked: Checked, *, runs: bool, rings: bool) -> Mapping[str, BusEnd | Path]:
         """Those of the buses that were named; else the rings of the run that is watched, if any."""
@@ -75,3 +83,7 @@ class LiveBuses:
         for watch in self._watches.values():
             watch.close()
         self._watches, self.text, self._next = {}, "", 0.0
+
+
+def _said(problem: Failure) -> str:
+    return str(problem).removeprefix("ravenchart: error: ")

@@ -97,11 +97,12 @@ def elements(system: System) -> tuple[MappedElement, ...]:
 def _controllers(system: System, last: int) -> tuple[MappedElement, ...]:
     """The controllers of each bus with `watch`, ``node.bus``, numbered behind ``last``."""
     watched = [bus for bus in system.buses if bus.watch is not None]
+    homes = [(b, n) for b, n in product(watched, system.nodes) if system.joins(b.name, n.name)]
     return tuple(
         MappedElement(
             number, f"{node.name}.{bus.name}", "bus", bus.origin, leaves=CONTROLLER_STATES
         )
-        for number, (bus, node) in enumerate(product(watched, system.nodes), last + 1)
+        for number, (bus, node) in enumerate(homes, last + 1)
     )
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from ravenchart.building import checking, programs
-from ravenchart.failures import Refused
+from ravenchart.command_line import main
+from ravenchart.failures import OK, Refused
 from ravenchart.gen.derive.completion import programs as parts_of
 from ravenchart.gen.model.buses import Message
 from ravenchart.paths import ROOT
@@ -66,6 +67,40 @@ def test_one_port_on_two_buses_is_two_messages(example: str, tmp_path: Path) -> 
     assert found["wheel_speed"].bus == "chassis"
     assert found["wheel_speed_cabin"].bus == "cabin"
     assert [str(end) for end in found["wheel_speed_cabin"].targets] == ["watch.spare"]
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_order_of_connections_decides_nothing(
+    swapped: bool, example: str, tmp_path: Path
+) -> None:
+    """One of the two names its bus, the other one does not: it takes no message of the first."""
+    own, _, rest = example.partition("  wheel_speed: {")
+    _, _, rest = rest.partition("to: watch.spare}\n")
+    lines = [
+        "  - {from: wheel.speed, to: watch.wheel, bus: chassis}\n",
+        "  - {from: wheel.speed, to: watch.spare}\n",
+    ]
+    lines = lines[::-1] if swapped else lines
+    wired = own.replace("connections:\n", f"connections:\n{''.join(lines)}")
+    rest = rest.replace("wheel.measure, wheel_speed, ", "wheel.measure, ")
+    rest = rest.replace("wheel.measure, spare_speed, ", "wheel.measure, ")
+    with pytest.raises(Refused, match=r"chassis or cabin may carry it .RV-0606"):
+        messages_of(wired + rest, tmp_path)
+
+
+def test_a_connection_takes_the_one_message_of_its_source(example: str, tmp_path: Path) -> None:
+    text = example.replace(
+        "from: watch.advice}", "from: watch.advice}\n  shown: {bus: cabin, from: watch.shown}"
+    )
+    found = messages_of(text.replace("to: dial.speed, bus: cabin}", "to: dial.speed}"), tmp_path)
+    assert [str(end) for end in found["shown"].targets] == ["dial.speed"]
+
+
+def test_a_bus_without_messages_agrees_with_the_checker(example: str, tmp_path: Path) -> None:
+    model = tmp_path / "model.yaml"
+    model.write_text(example.replace("buses:\n", f"buses:\n  idle: {{{LINE}}}\n"), encoding="utf-8")
+    assert main(["generate", str(model)]) == OK
+    assert main(["check-certificate", str(model)]) == OK
 
 
 def test_calls_replies_and_reads_travel_on_the_bus_of_their_binding(

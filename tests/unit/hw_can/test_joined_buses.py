@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import can
 import pytest
@@ -15,6 +16,7 @@ from can.interfaces.virtual import VirtualBus
 from ravenchart.building import checking
 from ravenchart.hw_can.bench.interfaces import BusEnd, joined_peer
 from ravenchart.hw_can.bench.peer import BenchError, FrameValues, Peer
+from ravenchart.hw_can.bench.replay import SUFFIXES, from_outside, log_for
 from ravenchart.hw_can.bench.several import JoinedCodec
 from ravenchart.paths import ROOT
 from ravenchart.running.vocabulary import BusVocabulary
@@ -95,11 +97,26 @@ def test_an_interface_that_is_not_there_leaves_the_others_closed(
     assert closed
 
 
-def test_a_frame_of_a_log_is_of_the_bus_that_knows_it() -> None:
+def frame(identifier: int, channel: str | None = None) -> can.Message:
+    return can.Message(arbitration_id=identifier, is_extended_id=False, data=b"\1", channel=channel)
+
+
+def test_a_frame_whose_identifier_two_buses_have_is_of_none_without_a_name() -> None:
+    """The gate's own `advice` of the cabin must not come back as `pedal` on the chassis."""
     codec = WORDS.codec
     assert isinstance(codec, JoinedCodec)
-    pedal = can.Message(arbitration_id=0x100, is_extended_id=False, data=b"\1")
-    assert codec.from_outside(pedal) == "pedal"  # `advice` of the cabin is sent by the gate
-    assert pedal.channel == "chassis"
-    other = can.Message(arbitration_id=0x100, is_extended_id=False, data=b"\1", channel="cabin")
-    assert codec.from_outside(other) is None
+    assert codec.from_outside(frame(0x100)) is None
+    assert codec.from_outside(frame(0x100, "cabin")) is None
+    assert codec.from_outside(frame(0x100, "chassis")) == "pedal"
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize(("bus", "sent"), [("chassis", ["pedal"]), ("cabin", [])])
+def test_a_log_is_of_the_bus_that_ends_its_name(
+    suffix: str, bus: str, sent: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / f"run-{bus}{suffix}"
+    with can.Logger(path) as log:
+        log.on_message_received(frame(0x100, bus))
+    frames = from_outside(log_for(path, WORDS.codec), WORDS.codec, frozenset())
+    assert [WORDS.codec.from_outside(one) for _, one in frames] == sent

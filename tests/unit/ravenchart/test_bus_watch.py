@@ -28,6 +28,7 @@ from ravenchart.running.bus_watch import BusWatch, WatchedBus, duration, most_in
 from ravenchart.running.vocabulary import BusVocabulary
 from ravenchart.workbench import live_buses, serving
 from ravenchart.workbench.live import LiveView
+from ravenchart.workbench.live_buses import LiveBuses
 from tests.support.bus_server import BusServer
 from tests.support.can_frames import within
 
@@ -251,6 +252,8 @@ def test_a_bus_that_there_cannot_be_ends_the_command_before_anything_starts(
         (["x"], "--channel x names no bus of Two_Buses: write chassis=CHANNEL or cabin=CHANNEL"),
         (["spare=x"], "--channel spare=x names no bus of Two_Buses"),
         (["cabin=x", "Cabin=y"], "--channel Cabin=y: cabin has a channel already"),
+        (["cabin=x", "chassis=x"], "--channel chassis=x: chassis cannot have the channel of cabin"),
+        (["cabin="], "--channel cabin=: cabin cannot have no channel"),
     ],
 )
 def test_of_several_buses_each_channel_names_one(
@@ -260,6 +263,28 @@ def test_of_several_buses_each_channel_names_one(
     call = ["monitor", str(TWO_BUSES), "--interface", "virtual", *words, "--once"]
     assert main(call) == UNUSABLE
     assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_the_page_shows_the_buses_that_can_be_watched_and_names_the_others(swapped: bool) -> None:
+    server = BusServer()
+    channels = [f"chassis={server.channel}", "cabin=127.0.0.1:9"]
+    buses = LiveBuses(("ravenchart", channels[::-1] if swapped else channels))
+    buses.join(checking.check(TWO_BUSES, deadlines=False), runs=False, rings=False)
+    assert [bus["bus"] for bus in buses.look()] == ["chassis"]
+    assert "127.0.0.1:9" in buses.text
+    buses.close()
+    server.close()
+
+
+def test_a_scenario_on_one_bus_says_what_is_on_the_other(tmp_path: Path, capsys: PRINTED) -> None:
+    scenario = tmp_path / "scenario.yaml"
+    scenario.write_text("scenario: x\nsteps:\n  - {send: pedal, with: {pressed: true}}\n")
+    call = ["run", str(TWO_BUSES), "--scenario", str(scenario), "--interface", "virtual"]
+    assert main([*call, "--channel", "cabin=x"]) == WRONG
+    said = capsys.readouterr().err
+    assert "`pedal` is on chassis, which has no channel" in said
+    assert "hint: add `--channel chassis=...`" in said
 
 
 def test_one_of_several_buses_is_watched_alone(capsys: PRINTED) -> None:
