@@ -117,6 +117,15 @@ def test_an_event_of_one_of_several_buses_says_which() -> None:
     assert first.hint == "name one of gate, dash: it and those behind it are cut off"
 
 
+def test_a_loss_is_expected_where_a_node_is_on_the_bus() -> None:
+    system = checking.check(TWO_BUSES / "model.yaml", deadlines=False).system
+    expected = "{lost: dash.chassis.lost_out, at_most: 1, because: x}"
+    text = f"scenario: x\nsteps: [{{wait: 1 s}}]\nexpect: [{expected}]\n"
+    (one,) = scenarios.problems(parse_scenario(text), system)
+    assert one.message == "there is no `dash.chassis.lost_out` among the counts of losses"
+    assert one.hint is not None and "dash.cabin.lost_out" in one.hint
+
+
 # --- The interpreter says what it leaves out -----------------------------------------------
 
 
