@@ -62,15 +62,21 @@ ELSEWHERE = [
 
 
 class Peer:
-    """The program of a node, for one machine, and the database of the model's bus."""
+    """The program of a node, for one machine, and the database of each bus of the model."""
 
     def __init__(self, runner: Runner, folder: Path) -> None:
         self.runner = runner
         self.system = runner.system
-        file = folder / f"{self.system.buses[0].name}.dbc"
-        database = cantools.database.load_file(file, strict=True)
-        assert isinstance(database, Database)
-        self.database = database
+        self.databases: dict[str, Database] = {}
+        for bus in self.system.buses:
+            database = cantools.database.load_file(folder / f"{bus.name}.dbc", strict=True)
+            assert isinstance(database, Database)
+            self.databases[bus.name] = database
+
+    def message(self, name: str) -> DbcMessage:
+        """A message of the only bus."""
+        (database,) = self.databases.values()
+        return database.get_message_by_name(name)
 
 
 def made(model: Path, folder: Path, machine: Machine = HERE) -> list[Peer]:
@@ -176,7 +182,7 @@ def test_every_boundary_value_is_packed_as_cantools_packs_it(peers: list[Peer]) 
     for peer, message in messages_of(peers):
         values = [v for v in samples(message) if has_signals(message, v)]
         assert len(values) >= min(5, possible(message))
-        other = peer.database.get_message_by_name(message.name)
+        other = peer.databases[message.bus].get_message_by_name(message.name)
         for value, frame in zip(values, peer.runner.packed(message, values), strict=True):
             raws = sent(message, value)
             assert frame == encoded(other, raws), (message.name, value)
@@ -205,7 +211,7 @@ def test_random_frames_are_accepted_exactly_when_every_raw_value_is_in_range(
 ) -> None:
     for peer, message in messages_of(peers):
         frames = drawn(peer, message)
-        other = peer.database.get_message_by_name(message.name)
+        other = peer.databases[message.bus].get_message_by_name(message.name)
         accepted: list[Values] = []
         for frame, found in zip(frames, peer.runner.unpacked(message, frames), strict=True):
             wanted = expected(message, frame)
@@ -313,9 +319,9 @@ def expected(message: Message, frame: bytes) -> dict[str, int] | None:
 )
 def test_the_database_says_who_sends_what_how_often_with_which_codes(peers: list[Peer]) -> None:
     (peer,) = peers
-    motion = peer.database.get_message_by_name("motion_out")
+    motion = peer.message("motion_out")
     assert (motion.senders, motion.cycle_time) == (["board"], 20)
-    gear = peer.database.get_message_by_name("motion_in").get_signal_by_name("gear")
+    gear = peer.message("motion_in").get_signal_by_name("gear")
     assert gear.choices == {0: "Neutral", 17: "Forward", 3: "Backward"}
 
 
@@ -324,7 +330,7 @@ def test_the_database_says_who_sends_what_how_often_with_which_codes(peers: list
 )
 def test_the_database_says_units_ranges_and_pages(peers: list[Peer]) -> None:
     (peer,) = peers
-    inside = peer.database.get_message_by_name("status_in").get_signal_by_name("inside")
+    inside = peer.message("status_in").get_signal_by_name("inside")
     assert (inside.unit, inside.scale, inside.offset) == ("degC", 0.1, 0)
     assert (inside.multiplexer_signal, inside.multiplexer_ids) == ("page", [0])
     assert (inside.minimum, inside.maximum, inside.receivers) == (-40, 125, ["board"])
