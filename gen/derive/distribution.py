@@ -163,15 +163,10 @@ def with_nodes(system: System) -> System:
             if bus is not None:
                 homes = [node.name for node in system.nodes if system.received(bus, node.name)]
             else:
-                homes = _joining(system, processor.slots[0].owner)
+                homes = system.joining(processor.slots[0].owner)
             found += [_on(processor, home, several=len(homes) > 1) for home in homes]
     watched = (_with_watches(system, processor) for processor in found)
     return replace(system, processors=tuple(p for p in watched if p.slots))
-
-
-def _joining(system: System, bus: str) -> list[str]:
-    """The nodes that send or receive on a bus."""
-    return [node.name for node in system.nodes if system.joins(bus, node.name)]
 
 
 def _with_watches(system: System, processor: Processor) -> Processor:
@@ -181,7 +176,7 @@ def _with_watches(system: System, processor: Processor) -> Processor:
     """
     slots: list[Slot] = []
     for slot in processor.slots:
-        homes = _joining(system, slot.owner) if slot.work is Work.BUS_WATCH else []
+        homes = system.joining(slot.owner) if slot.work is Work.BUS_WATCH else []
         if len(homes) > 1:
             slots.append(replace(slot, name=f"{Work.BUS_WATCH.value}_{processor.node}"))
         elif homes or slot.work is not Work.BUS_WATCH:

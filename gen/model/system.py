@@ -350,6 +350,10 @@ class System:
         at = next(homes, found[0].node if found else None)
         return next((one for one in found if one.node == at), None)
 
+    def joining(self, bus: str) -> list[str]:
+        """The nodes that send or receive on a bus, in model order."""
+        return [node.name for node in self.nodes if self.joins(bus, node.name)]
+
     def joins(self, bus: str, node: str) -> bool:
         """Whether a node sends or receives on a bus."""
         return any(

@@ -99,7 +99,8 @@ def bindings_of(
 ) -> tuple[Binding, ...]:
     """The binding of each command that an instance requires."""
     made: list[Binding] = []
-    for form, provider in ((one.form, one.provider) for one in given.values()):
+    for one in given.values():
+        form, provider = one.form, one.provider
         if provider is not None and form.has("time_limit") and not has_tasks(provider):
             message = (
                 f"`time_limit` has no meaning for {provider_name(provider)}, which has no task"
@@ -149,17 +150,17 @@ def event_wires(
         for heard in instance.component.hears:
             wanted, at = instance.outside(heard.interface)
             one = given.get((instance.name.lower(), heard.interface.lower()))
-            form, provider = (None, None) if one is None else (one.form, one.provider)
             needed = any(
                 need.interface == heard.interface and not need.optional
                 for need in instance.component.needs
             )
-            if form is None and not needed:
+            if one is None and not needed:
                 message = f"nothing provides {wanted}, which requires the event {heard.name}"
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 hint = _binding(wanted)
                 findings.error("RV-1203", at, message, notes=notes, hint=hint)
-            elif one is not None and form is not None and provider is not None:
+            elif one is not None and one.provider is not None:
+                form, provider = one.form, one.provider
                 told = tells(provider, heard.name)
                 notes = [(heard.origin, f"{heard.name} is required here")]
                 if not told:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.names import alike_in_databases
-from ravenchart.gen.model.buses import Bus, Message
+from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import Slot, System, Work
 from ravenchart.gen.resolve.authentication import AUTHENTICATION
@@ -25,17 +25,13 @@ WATCH = "RV-0714"
 """A bus with `watch` that a node watches in no row, or in several."""
 
 
-def _joining(system: System, bus: Bus) -> list[str]:
-    return [node.name for node in system.nodes if system.joins(bus.name, node.name)]
-
-
 def buses_are_watched(resolved: Resolved) -> Iterator[Diagnostic]:
     """A bus with `watch` has that row once on each of its nodes, and on no other."""
     system = resolved.system
     if not {"processors", "messages"} <= resolved.sound_sections:
         return
     for bus in system.buses:
-        joining = _joining(system, bus)
+        joining = system.joining(bus.name)
         for node in system.nodes:
             rows: list[Slot] = [
                 slot
@@ -65,7 +61,7 @@ def bus_events_can_come(resolved: Resolved) -> Iterator[Diagnostic]:
     if not {"processors", "messages", "instances"} <= resolved.sound_sections:
         return
     for bus in system.buses:
-        joining = _joining(system, bus)
+        joining = system.joining(bus.name)
         if not joining:
             continue  # all is on one node: nothing travels on it
         for instance, event in dict.fromkeys((*bus.raises, *bus.recovers_on)):

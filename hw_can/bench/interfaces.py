@@ -87,9 +87,9 @@ def joined_peer(
             ends[bus] = opened_bus(interface)
             stack.callback(ends[bus].shutdown)
         made = joined_bus(ends)
-        link = None
-        if len(ends) == 1 and interface.name == "slcan" and "socket://" in interface.channel:
-            link = link_of(made)
+        only = next(iter(interfaces.values())) if len(interfaces) == 1 else None
+        by_tcp = only is not None and only.name == "slcan" and "socket://" in only.channel
+        link = link_of(made) if by_tcp else None
         peer = Peer(made, codec, link, record, gone=shown_ends(interfaces))
         stack.pop_all()
         return peer

@@ -287,7 +287,7 @@ def _served_nodes(system: System, processor: Processor) -> set[str]:
     bus, work = processor.slots[0].owner, processor.slots[0].work
     if work is Work.BUS_RECEIVE:
         return {node.name for node in system.nodes if system.received(bus, node.name)}
-    return {node.name for node in system.nodes if system.joins(bus, node.name)}
+    return set(system.joining(bus))
 
 
 def stack_text(size: int) -> str:

@@ -267,16 +267,15 @@ class _Check:
 
     def bus(self, scenario: Scenario) -> None:
         """Buses that there are, and nodes that can be cut off: all but the first on a bus."""
-        nodes = [node.name for node in self.system.nodes]
-        if scenario.bus_events and not joins_a_server(self.system, len(nodes)):
+        if scenario.bus_events and not joins_a_server(self.system, len(self.system.nodes)):
             told = f"`bus` is for a system with several nodes, and {self.system.name} has one"
             self.source.wrong(MISFIT, ("bus",), told, "remove `bus`", key=True)
             return
         for index, event in enumerate(scenario.bus_events):
             bus = self._bus_of(event, index)
-            homes = [node for node in nodes if bus and self.system.joins(bus, node)]
             if not bus or not isinstance(event, Cut):
                 continue
+            homes = self.system.joining(bus)
             if event.cut.lower() not in map(str.lower, homes[1:]):
                 told = f"`{event.cut}` cannot be cut off"
                 hint = f"{bus} has one node"
