@@ -172,6 +172,7 @@ CODES: Mapping[str, str] = {
     "RV-0714": "A bus with `watch` is not watched by exactly one row on each of its nodes.",
     "RV-0715": "A port cannot release a processor.",
     "RV-0716": "A processor that a port releases does not hold the rows that handle its values.",
+    "RV-0717": "What leaves a processor with a logical execution time does so at other instants.",
     "RV-0801": "A section without which there is no system is missing or empty.",
     "RV-0802": "Something cannot reach from one node to another yet.",
     "RV-0803": "Something that the system has once is given twice.",

@@ -23,6 +23,7 @@ from ravenchart.gen.resolve.system import resolve
 from ravenchart.gen.rules.buses import names_in_databases
 from ravenchart.gen.rules.cores import shared_across_cores
 from ravenchart.gen.rules.folding import folded, folded_elements
+from ravenchart.gen.rules.logical import visible_at_instants
 from ravenchart.gen.rules.sections import sections_are_part_of_tasks
 from ravenchart.gen.rules.system import violations
 
@@ -70,6 +71,7 @@ def _valid(
     system = completed(resolved.system)
     findings.items.extend(names_in_databases(system))
     findings.items.extend(shared_across_cores(system))
+    findings.items.extend(visible_at_instants(system))
     findings.items.extend(sections_are_part_of_tasks(system))
     return None if _has_error(findings) else system
 

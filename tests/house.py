@@ -74,6 +74,11 @@ FLOATS = "runtime-floats"
 """A part of the runtime that no controller needs: bodies of users call it."""
 VALUES = "runtime-values"
 """The part of the runtime that controllers need which record values."""
+RECORDING = ("instance_values.ads", "ravenchart-hosts-value_lines.adb")
+"""Its units."""
+LOGICAL = "runtime-logical"
+"""The part of the runtime that controllers need which have logical execution times."""
+LOGICAL_UNITS = ("instance_logical.ads", "ravenchart-logical_times.ads")
 
 
 class UnknownTargetError(ValueError):
@@ -90,7 +95,7 @@ class Target:
 
     def reasons(self) -> dict[str, str]:
         """Why something of it may be outside SPARK."""
-        own = outside_spark.reasons_for_model(self.folder, cores=2) if self.folder else {}
+        own = outside_spark.reasons_for_model(self.folder, slots=True) if self.folder else {}
         return {**outside_spark.reasons_for_target(OUTSIDE, self.name), **own}
 
 
@@ -103,7 +108,8 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
     runtime: dict[str, Callable[[], Target]] = {
         **{f"runtime-{driver}": partial(_runtime, driver) for driver in DRIVERS},
         FLOATS: _floats,
-        VALUES: _values,
+        VALUES: partial(_instances, VALUES, *RECORDING),
+        LOGICAL: partial(_instances, LOGICAL, *LOGICAL_UNITS),
         BUS: _bus,
         KERNEL: _kernel,
     }
@@ -176,7 +182,8 @@ def _floats() -> Target:
     return Target(FLOATS, task)
 
 
-def _values() -> Target:
+def _instances(name: str, *units: str) -> Target:
+    """A part of the runtime that some controllers need: these units and what they instantiate."""
     obj = ROOT / "obj"
     project = ROOT / "proofs" / "proofs.gpr"
     driver = DRIVERS[0]
@@ -188,9 +195,9 @@ def _values() -> Target:
         (project.parent, project.parent / "instances", *programs.runtime_folders(driver)),
         warnings="error",
         whole=True,
-        units=("instance_values.ads", "ravenchart-hosts-value_lines.adb"),
+        units=units,
     )
-    return Target(VALUES, task)
+    return Target(name, task)
 
 
 def _bus() -> Target:

@@ -34,6 +34,11 @@ for those before it. A job that finds none repeats its output of the last item. 
 is replaced as often as its writer puts an item in. The writer's T counts for the age,
 whatever comes after, and the reader's own does not. These are bounds for any phasing
 of any clocks.
+
+A task with a logical execution time L makes its output visible L after its arrival (Henzinger,
+Horowitz, Kirsch, Proc. IEEE 2003). L takes the place of R then, and the reader samples at its
+arrival. Where both count from one epoch, the waits are those of two grids of instants
+(Becker, Dasari, Mubeen, Behnam, Nolte, JSA 2017, for LET).
 """
 
 from __future__ import annotations
@@ -77,6 +82,10 @@ class ChainStep:
         ``longest``  longest time between two of its outputs, where that is more than its
                      period; 0 where it is not
         ``delay``    how much longer an input may wait for the step, which is not free for each
+        ``lasting``  how long after its arrival the step before makes its output visible, at
+                     exactly that instant, where the hop to it is sampled; 0: when it completes
+        ``saved``    how much shorter than both periods the longest distance is of these instants
+                     and the arrivals of the step, where all of them are known
     """
 
     name: str
@@ -87,6 +96,8 @@ class ChainStep:
     keeps: str = ""
     longest: int = 0
     delay: int = 0
+    lasting: int = 0
+    saved: int = 0
 
     def __post_init__(self) -> None:
         """Refuse to take or put no items, or several of both, with a ValueError."""
@@ -182,9 +193,10 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
     for number, step in enumerate(chain.steps):
         before = chain.steps[number - 1] if number else None
         after = chain.steps[number + 1] if number + 1 < len(chain.steps) else None
-        response, cycle = found.from_event(step.name), _cycle(step.name, network)
+        response, cycle = _until_visible(step, after, found), _cycle(step.name, network)
         wait: int | None = 0
         backlog: int | None = 0
+        kept_up = not queued and before is not None and renewal == _cycle(before.name, network)
         if step.hop is HopKind.RELEASED and before is not None:
             response = _less(response, found.from_event(before.name))
             wait = network.items()[step.name].period - network.items()[before.name].period
@@ -192,6 +204,8 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
             wait = None if wait and (queued or cycle is None) else wait
         elif step.hop is HopKind.SAMPLED:
             wait, queued = cycle, False
+            if wait is not None and kept_up:
+                wait -= step.saved
         elif step.hop is HopKind.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
             queued = True
@@ -207,9 +221,19 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
         if after is not None and (renewal is None or after.hop is HopKind.QUEUED or not queued):
             follows = after.hop in (HopKind.RELEASED, HopKind.WOKEN)
             counted = 0 if follows and not step.keeps else renewal
+            if after.saved and renewal is not None and renewal == cycle and not queued:
+                counted = renewal - after.saved
         wait = None if step.waits or wait is None else wait + step.delay
         hops.append(HopLatency(step, wait, response, counted, backlog))
     return Latency(chain, tuple(hops), renewal)
+
+
+def _until_visible(step: ChainStep, after: ChainStep | None, found: Holistic) -> int | None:
+    """From the event of a step until its output can be read; None where it may come too late."""
+    done = found.from_event(step.name)
+    if after is None or not after.lasting or done is None:
+        return done
+    return after.lasting if done <= after.lasting else None
 
 
 def _check(chain: TimedChain, network: Network) -> None:

@@ -8,7 +8,8 @@ goes on with the next record in the trace at each place of the chain's way. The
 reaction of a journey is that to an input which the run before its first row
 has just missed. A row that sends only from some of its jobs reacts in these: a journey
 ends where a job sends nothing. Frames are distinguished by their order only. Where several
-of a message are under way, a journey may look shorter than it was, never longer.
+of a message are under way, a journey may look shorter than it was, never longer. A value of a row
+with a logical execution time goes on when it becomes visible.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.logical import first_of, logical_links, period_of, place_of
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
@@ -48,8 +51,16 @@ class Journey:
         return self.exceeded and self.observed <= self.bound + self.places * withheld
 
 
-Stage = tuple[Sequence[int], Sequence[int]]
-"""The times of the records at a place, and the starts of the row whose job wrote them."""
+class Stage(NamedTuple):
+    """The times of the records at a place, and the starts of the row whose job wrote them.
+
+    ``later``: when a journey goes on that has come to each record, where that is at another time:
+    when its value becomes visible, or when the row ran whose releases the times are.
+    """
+
+    times: Sequence[int]
+    jobs: Sequence[int] = ()
+    later: Sequence[int] | None = None
 
 
 def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
@@ -68,8 +79,8 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
 
 def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
-    (starts, _), *others = _stages(chain, system, seen)
-    first = [start for start in starts if start >= seen.ready]
+    start_of_all, *others = _stages(chain, system, seen)
+    first = [start for start in start_of_all.times if start >= seen.ready]
     last = seen.executions.get(str(chain.way[-1]), 0)
     origins = first if isinstance(chain.way[0], Carried) else (None, *first)
     found = []
@@ -83,13 +94,13 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
 def _end(start: int, stages: Sequence[Stage]) -> int | None:
     """The end of the journey that began at ``start``; None when it does not end."""
     now = start
-    for times, jobs in stages:
+    for times, jobs, later in stages:
         place, following = bisect_left(times, now), bisect_right(jobs, now)
         if place == len(times):
             return None
         if following < len(jobs) and times[place] >= jobs[following]:
             return None  # this job sent nothing
-        now = times[place]
+        now = times[place] if later is None else later[place]
     return now
 
 
@@ -98,19 +109,36 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
     messages = {message.name: message for message in system.messages}
     inputs = {End(i.name, port.name) for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}
+    links = {link.connection.target: link for link in logical_links(system)}
     jobs: Sequence[int] = ()  # of the row before
+    row = ""
     for place in chain.way:
         if isinstance(place, Carried):
             message = messages[place.message]
             at_once = message.source is not None and message.transmission is None
             kind = "arrived" if message.source is None else "sent"
-            yield [r.time for r in seen.of(kind, place.message)], jobs if at_once else ()
+            times = [r.time for r in seen.of(kind, place.message)]
+            yield Stage(times, jobs if at_once else ())
             jobs = ()
         elif place in inputs:
-            yield [r.time for r in seen.of("arrived", str(place))], jobs
+            came = [r.time for r in seen.of("arrived", str(place))]
+            ran = [r.time for r in seen.of("activity", f"{place.instance}.ports")]
+            link = links.get(place)
+            if link is None or row not in link.rows:
+                yield from (Stage(came, jobs), Stage(ran))
+            else:
+                sent = _releases(system, row, came)
+                yield Stage(came, jobs, [release + link.lasting for release in sent])
+                yield Stage(_releases(system, link.handler, ran), later=ran)
             jobs = ()
-            yield [r.time for r in seen.of("activity", f"{place.instance}.ports")], jobs
         elif str(place) in rows:
             times = [r.time for r in seen.of("activity", str(place))]
-            yield times, ()
-            jobs = times
+            yield Stage(times)
+            jobs, row = times, str(place)
+
+
+def _releases(system: System, row: str, times: Sequence[int]) -> list[int]:
+    """The releases of the executions of a row in which these times are, all deadlines met."""
+    place = place_of(system, row)
+    first, period = first_of(*place), period_of(*place)
+    return [first + (time - first) // period * period for time in times]

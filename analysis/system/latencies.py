@@ -33,6 +33,7 @@ from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.logical import logical_links, place_of, saved_wait
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
@@ -222,7 +223,7 @@ class Latencies:
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
         before = steps[-1].name if steps else ""
         hop = HopKind.QUEUED if queued else HopKind.WOKEN if woken else HopKind.SAMPLED
-        made = ChainStep(row, hop, puts=puts)
+        made = self._visible(ChainStep(row, hop, puts=puts), place, before)
         if before in self.rows and row in self.rows and puts == 1 and len(senders) < 2:
             (processor, first), (other, then) = self.rows[before], self.rows[row]
             divisors = {processor.slots[first].divisor, other.slots[then].divisor}
@@ -242,6 +243,15 @@ class Latencies:
             waits = f"{row} takes events, time-outs and completions one by one, oldest first"
             made = replace(made, waits=waits)
         return made
+
+    def _visible(self, step: ChainStep, place: End, before: str) -> ChainStep:
+        """The step, with the instants from which on it sees the values of the one before."""
+        for link in logical_links(self.system):
+            if link.connection.target == place and before in link.rows:
+                rows = place_of(self.system, before), place_of(self.system, step.name)
+                saved = saved_wait(*rows, link.lasting)
+                return replace(step, lasting=link.lasting, saved=saved)
+        return step
 
     def _rare(self, step: ChainStep, processor: Processor, sender: str) -> ChainStep:
         """The row that begins a release of a processor that a port releases.

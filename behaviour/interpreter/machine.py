@@ -19,6 +19,7 @@ from collections.abc import Iterable, Iterator
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.logical import logical_links
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
@@ -33,6 +34,7 @@ class Mailbox:
 
     def __init__(self, port: Port) -> None:
         """An empty mailbox; that of a sampled port keeps the last value."""
+        self.port = port
         sampled = port.kind is PortKind.SAMPLED
         self.depth = 1 if sampled else port.depth
         self.policy = Overflow.DROP_OLDEST if sampled else port.overflow
@@ -49,6 +51,29 @@ class Mailbox:
         if self.policy is Overflow.DROP_OLDEST:
             self.waiting.popleft()
             self.waiting.append(value)
+
+
+class LogicalMailbox(Mailbox):
+    """The values of a sender with a logical execution time, the newest first."""
+
+    def __init__(self, port: Port, depth: int) -> None:
+        """An empty mailbox that keeps so many values."""
+        super().__init__(port)
+        self.kept: list[tuple[int, Value]] = []
+        self.most, self.next = depth, 0
+
+    def show(self, value: Value, visible: int) -> None:
+        """Keep a value that is visible from an instant on."""
+        same = bool(self.kept) and self.kept[0][0] == visible
+        self.kept = [(visible, value), *self.kept[same:]][: self.most]
+
+    def look(self, now: int) -> None:
+        """Let the port region find the newest value that is visible and was not taken before."""
+        self.waiting.clear()
+        found = next(((at, value) for at, value in self.kept if at <= now), None)
+        if found is not None and found[0] >= self.next:
+            self.next = found[0] + 1
+            self.waiting.append(found[1])
 
 
 class InstanceRun:
@@ -147,6 +172,15 @@ class Machine:
         """Before the epoch; ``region_run`` runs the regions."""
         self.system = system
         self.instances = {one.name: InstanceRun(one, region_run) for one in system.instances}
+        for link in logical_links(system):
+            end = link.connection.target
+            boxes = self.instances[end.instance].mailboxes
+            boxes[end.name] = LogicalMailbox(boxes[end.name].port, link.depth)
+        self._lasting = {
+            (row, link.connection.target): link.lasting
+            for link in logical_links(system)
+            for row in link.rows
+        }
         self._periodic = [one for one in system.processors if one.released_by is None]
         woken = (one for one in system.processors if one.released_by_port is not None)
         self._woken = sorted(woken, key=lambda one: -one.priority)
@@ -169,7 +203,7 @@ class Machine:
     ) -> Iterator[StepRecord]:
         """Execute one instant: first the stimuli from outside, then the rows."""
         for entry in entries:
-            self._take(entry)
+            self._take(entry, now)
         for slot in slots:
             if self._woken:
                 above = self.system.processor_of(slot.element)
@@ -214,20 +248,27 @@ class Machine:
         ]
         return now, slots
 
-    def _take(self, entry: Raised | Arrived) -> None:
+    def _take(self, entry: Raised | Arrived, now: int) -> None:
         match entry:
             case Raised():
                 self.instances[entry.instance].offer(entry.event, entry.value)
             case Arrived():
-                self._put(entry.end, entry.value)
+                self._put(entry.end, entry.value, now)
 
-    def _put(self, end: End, value: Value) -> None:
-        self.instances[end.instance].mailboxes[end.name].put(value)
+    def _put(self, end: End, value: Value, visible: int) -> None:
+        box = self.instances[end.instance].mailboxes[end.name]
+        if isinstance(box, LogicalMailbox):
+            box.show(value, visible)
+        else:
+            box.put(value)
 
     def _execute(self, now: Ns, slot: Slot) -> Iterator[StepRecord]:
         """One execution of a row."""
         match slot.work:
             case Work.PORT_REGION:
+                for box in self.instances[slot.owner].mailboxes.values():
+                    if isinstance(box, LogicalMailbox):
+                        box.look(now)
                 for name, value in self.instances[slot.owner].run_ports():
                     self._record(now, slot.owner, name, value)
             case Work.REGION:
@@ -245,7 +286,7 @@ class Machine:
         run.begin()
         for _ in range(run.region.steps_per_execution):
             step = run.step(view)
-            self._deliver(now, own, step.out)
+            self._deliver(now, own, name, step.out)
             if step.lost and run.region.on_overflow is not None:
                 own.offer(run.region.on_overflow, None)
             if step.behaviours:
@@ -272,7 +313,7 @@ class Machine:
             own.regions[state.region].finish(state.state)
         in_order = [(event, raised[event]) for event in activity.raises if event in raised]
         out.raised = [one for one in in_order if one[0] != DONE]
-        self._deliver(now, own, out)
+        self._deliver(now, own, activity.name, out)
 
     def _record(self, now: Ns, instance: str, item: str, value: Value) -> None:
         """Record a value that was set, sent or taken, where the model records it."""
@@ -280,13 +321,15 @@ class Machine:
             scalar = dict(value)[one.field or ""] if isinstance(value, tuple) else value
             self.values.append(ValueRecord(now, one.element, scalar))
 
-    def _deliver(self, now: Ns, own: InstanceRun, out: Outbox) -> None:
+    def _deliver(self, now: Ns, own: InstanceRun, row: str, out: Outbox) -> None:
         """Send the values, ports in model order; then raise the events, in the order raised."""
         for port in own.component.outputs():
             if port.name in out.sent:
                 self._record(now, own.instance.name, port.name, out.sent[port.name])
                 for connection in self.system.connections:
                     if connection.source == End(own.instance.name, port.name):
-                        self._put(connection.target, out.sent[port.name])
+                        sent = f"{own.instance.name}.{row}", connection.target
+                        visible = now + self._lasting.get(sent, 0)
+                        self._put(connection.target, out.sent[port.name], visible)
         for event, value in out.raised:
             own.offer(event, value)

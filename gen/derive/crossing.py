@@ -1,20 +1,24 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Values that go from one core of a node to another: no protected object holds them.
+"""Values that go from one core of a node to another, or become visible at a given instant.
+
+No protected object holds them.
 
 A ceiling protects an object on one core only. So an input port whose sender runs on another core
 has a mailbox of atomic objects, with one task on each side: `Ravenchart.Crossing_Samples` or
 `Ravenchart.Crossing_Queues`. The reports of another core come to the main program in the same way.
+A port whose sender has a logical execution time has `Ravenchart.Logical_Samples`, on any core.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.logical import LogicalLink, logical_links
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
@@ -24,7 +28,7 @@ MAIN_CORE = 1
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """An input port that gets values from another core."""
+    """An input port that gets values from another core, or at the instants of its sender."""
 
     target: End
     port: Port
@@ -34,6 +38,8 @@ class Crossing:
     """The core of the first of them."""
     taken_on: int
     """The core of the port's handler."""
+    logical: LogicalLink | None = None
+    """From when on its values are visible, where that does not follow from when they are sent."""
 
     @property
     def element(self) -> str:
@@ -64,11 +70,17 @@ def core_of(system: System, instance: str) -> int:
 
 def crossings(system: System) -> tuple[Crossing, ...]:
     """Every one of a program, in the order of the model."""
-    return tuple(_crossings(system)) if other_cores(system) else ()
+    links = {one.connection.target: one for one in logical_links(system)}
+    return tuple(_crossings(system, links)) if links or other_cores(system) else ()
+
+
+def has_slots(system: System) -> bool:
+    """Whether a program of the system has mailboxes of slots."""
+    return system.most_cores > 1 or bool(logical_links(system))
 
 
 def crosses(system: System, end: End) -> bool:
-    """Whether values for an end come to an input port from another core.
+    """Whether values for an end come to an input port by a mailbox of `crossings`.
 
     ``system`` is completed: the mailboxes of all other input ports are among its objects.
     """
@@ -91,7 +103,7 @@ def senders_to(system: System, end: End) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _crossings(system: System) -> Iterator[Crossing]:
+def _crossings(system: System, links: Mapping[End, LogicalLink]) -> Iterator[Crossing]:
     cores = {processor.name: processor.core for processor in system.processors}
     for instance in system.instances:
         for port in instance.component.inputs():
@@ -99,5 +111,5 @@ def _crossings(system: System) -> Iterator[Crossing]:
             home = system.processor_of(f"{instance.name}.ports").core
             senders = senders_to(system, end)
             away = [cores[name] for name in senders if cores[name] != home]
-            if away:
-                yield Crossing(end, port, senders, away[0], home)
+            if away or end in links:
+                yield Crossing(end, port, senders, (away or [home])[0], home, links.get(end))

@@ -203,6 +203,10 @@ class ProcessorForm(Element):
     )
     offset: Span = PydanticField(default=0, description="Time of the first release after start.")
     deadline: PositiveSpan | None = optional("Relative deadline; the shortest of its table if none")
+    logical_execution_time: PositiveSpan | None = optional(
+        "Values that it sends to sampled ports on other processors of the node become visible so "
+        "long after each release, and not before; from the deadline to the period."
+    )
     priority: int | None = optional(
         "1 to 30, larger is more urgent; deadline-monotonic unless given.",
         ge=PRIORITIES[0],

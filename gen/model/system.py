@@ -102,6 +102,8 @@ class Processor:
     """(instance, event) that the supervisor of its node raises when the processor is silent."""
     released_at: Origin | None = None
     """Where ``released_by`` is given."""
+    logical: Ns | None = None
+    """The logical execution time: how long after its release what it sends becomes visible."""
 
     @property
     def released_by_port(self) -> End | None:

@@ -180,6 +180,10 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         if form.offset and form.has("offset"):
             message = "`offset` has no meaning for a sporadic processor"
             findings.error("RV-0210", form.at_key("offset"), message, hint="remove it")
+        if form.logical_execution_time is not None:
+            message = f"{name} is sporadic: it has no `logical_execution_time`"
+            hint = "only releases by time are known beforehand: remove it"
+            findings.error("RV-0210", form.at_key("logical_execution_time"), message, hint=hint)
     slots = [
         _slot(text, form.item_at("activities", index), form, site)
         for index, text in enumerate(form.activities)
@@ -210,6 +214,8 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         message = f"the deadline of {name} is longer than its period"
         findings.error("RV-0703", form.at("deadline"), message)
     shortest = table_deadline(sound, period)
+    if form.logical_execution_time is not None and form.released_by is None and whole:
+        shortest = min(shortest, _logical(name, form, period, findings))
     deadline = shortest if form.deadline is None else min(Ns(form.deadline), shortest)
     return Processor(
         name=name,
@@ -227,7 +233,21 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         core=form.core,
         on_silence=silences,
         released_at=None if releaser is None else form.at("released_by"),
+        logical=None if form.logical_execution_time is None else Ns(form.logical_execution_time),
     )
+
+
+def _logical(name: str, form: ProcessorForm, period: Ns, findings: Findings) -> Ns:
+    """The logical execution time of a processor, which no deadline of it exceeds."""
+    given = Ns(form.logical_execution_time or 0)
+    if form.deadline is not None and form.deadline > given:
+        message = f"the deadline of {name} is longer than its logical execution time"
+        hint = "leave `deadline` out: values must be there when they become visible"
+        findings.error("RV-0703", form.at("deadline"), message, hint=hint)
+    if given > period:
+        message = f"the logical execution time of {name} is longer than its period"
+        findings.error("RV-0703", form.at("logical_execution_time"), message)
+    return given
 
 
 def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ravenchart.building import programs
 from ravenchart.failures import OK, WRONG
+from ravenchart.gen.derive.crossing import has_slots
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import stages
@@ -60,7 +61,7 @@ def execute(options: argparse.Namespace) -> int:
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
     made = programs.programs_of(checked)
-    reasons = outside_spark.reasons_for_model(checked.folder, cores=checked.system.most_cores)
+    reasons = outside_spark.reasons_for_model(checked.folder, slots=has_slots(checked.system))
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:

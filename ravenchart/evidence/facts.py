@@ -20,6 +20,7 @@ from ravenchart.building.checking import Checked
 from ravenchart.building.programs import Program
 from ravenchart.building.stacks import read_record
 from ravenchart.failures import Refused
+from ravenchart.gen.derive.crossing import has_slots
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
@@ -112,7 +113,7 @@ def gather(
         chosen,
         nodes,
         runtime,
-        tuple(outside_spark.reasons_for_model(folder, cores=checked.system.most_cores).items()),
+        tuple(outside_spark.reasons_for_model(folder, slots=has_slots(checked.system)).items()),
         reasons,
         why,
         sources,

@@ -54,6 +54,8 @@ class Task:
     after: str | None = None
     """The task or message that releases the driver."""
     core: int = 1
+    lasting: int = 0
+    """How long after its releases what it sends is visible; 0: when it is sent."""
 
     @property
     def place(self) -> tuple[str, int]:
@@ -341,7 +343,8 @@ class Deployment:
             return Task(name, node, 1, 1, 0)
         period = form.time("period") if form.text("period") else min(periods)
         shortest = min(ends, default=period)
-        deadline = min(form.time("deadline", shortest), shortest, period)
+        lasting = form.time("logical_execution_time", 0)
+        deadline = min(form.time("deadline", shortest), shortest, period, lasting or period)
         for row in rows:
             row.divisor = row.period // period
         by = form.text("released_by") or ""
@@ -357,6 +360,7 @@ class Deployment:
             bus=self.buses.name(by),
             port=self._releasing(by) if "." in by else None,
             core=form.number("core", 1),
+            lasting=lasting,
         )
 
     def _releasing(self, end: str) -> str:

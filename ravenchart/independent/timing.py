@@ -149,6 +149,8 @@ class Timing:
         periodic = bool(task.rows) and not task.sporadic
         if periodic and any(t.offset for t in self.deployment.tasks if t.node == task.node):
             self.same("tasks", f"{own}_O", task.offset, f"the offset {why}")
+        if task.lasting:
+            self.same("tasks", f"{own}_Let", task.lasting, f"the logical execution time {why}")
         jitter = self.jitter(task)
         self.same("tasks", f"{own}_J", jitter, f"the lateness of {task.element}")
         if not task.rows:

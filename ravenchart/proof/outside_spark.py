@@ -24,23 +24,23 @@ from .spark_results import Outside
 FILE = "outside_spark.toml"
 """Its name, beside a model."""
 
-OF_CORES = {
+OF_SLOTS = {
     "Ravenchart.Crossing_Boards.Slots": "ASM-023",
     "Ravenchart.Crossing_Queues.Slots": "ASM-023",
     "Ravenchart.Shared_Slots": "ASM-023",
 }
-"""Parts of the runtime in each program for several cores, with the entry of assumptions.md."""
+"""Parts of the runtime in programs whose mailboxes have slots, with the entry of assumptions.md."""
 
 
 class WrongList(Failure):
     """The file is no list of names with reasons; the text says where and why."""
 
 
-def reasons_for_model(folder: Path, *, cores: int) -> dict[str, str]:
-    """Name to reason for a model in ``folder`` whose largest node has at most so many cores."""
+def reasons_for_model(folder: Path, *, slots: bool) -> dict[str, str]:
+    """Name to reason for a model in ``folder``; ``slots``: its programs have mailboxes of slots."""
     path = folder / FILE
     own = _reasons(path, _table(path)) if path.is_file() else {}
-    return {**(OF_CORES if cores > 1 else {}), **own}
+    return {**(OF_SLOTS if slots else {}), **own}
 
 
 def reasons_for_target(path: Path, target: str) -> dict[str, str]:
@@ -78,7 +78,7 @@ def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outsi
 
 def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
     """Names of the list that cover nothing; those of the runtime need not."""
-    asked = (name for name in reasons if name not in OF_CORES)
+    asked = (name for name in reasons if name not in OF_SLOTS)
     return tuple(name for name in asked if not any(_covers(name, o) for o in found))
 
 

@@ -8,16 +8,19 @@ The model decides which sums (`hops`); claims are numbers only.
 
 from __future__ import annotations
 
+import math
+
 from ravenchart.gen.emit.ada.declarations import Decl
 from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, number
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.claims import ChainClaim
+from ravenchart.gen.model.logical import first_of, period_of, place_of
 from ravenchart.gen.model.system import Chain, Processor, System
 
 from .hops import ClaimedHop, hops_of
-from .terms import assured, exact, name_of, named_number, plus, refuse, stated, times
+from .terms import assured, exact, name_of, named_number, none_of, plus, refuse, stated, times
 
 SUFFIX = {"row": "Done", "item": "R", "handed": "Handed", "transfer": "Transfer"}
 """The endings of the names that steps have for their responses."""
@@ -51,9 +54,17 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
                 reaction.append(OperatorChain("-", (_longest(system, hop), _period(system, hop))))
         elif hop.how == "sampled":
             words.append(f"{hop.element} samples.")
-            reaction.append(_period(system, hop))
-            if before is not None and not queued:
-                age.append(_longest(system, _sender(hops[:place])))
+            sender = None if before is None else _sender(hops[:place])
+            saved: list[Expr] = []
+            if hop.link is not None and before is not None:
+                lasting = ref(f"{name_of(hop.link.sender.name)}_Let")
+                reaction[-1] = age[-1] = lasting
+                if not queued and sender is not None and _is_own(hops[:place], sender):
+                    items += _grid(system, f"{own}_{place + 1}", (before, hop), chain.name)
+                    saved = [ref(f"{own}_{place + 1}_Grid"), ref(f"{own}_{place + 1}_Lag")]
+            reaction.append(_less(_period(system, hop), saved))
+            if sender is not None and not queued:
+                age.append(_less(_longest(system, sender), saved))
             queued = False
         elif hop.how == "woken" and before is not None:
             words.append(f"A queue releases {hop.element}; a value waits for its response time.")
@@ -97,6 +108,49 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             problem = f"can have any {low}: " + (without[0] if without else "its way is broken")
             items.append(refuse(number(1), number(0), label, problem))
     return items
+
+
+def _less(period: Expr, saved: list[Expr]) -> Expr:
+    """The longest distance of instants with one epoch: period - grid + lag."""
+    if not saved:
+        return period
+    grid, lag = saved
+    return OperatorChain("+", (OperatorChain("-", (period, grid)), lag))
+
+
+def _is_own(hops: tuple[ClaimedHop, ...], sender: ClaimedHop) -> bool:
+    """Whether the last step makes an output in each of its own jobs, as often as its sender."""
+    last = hops[-1]
+    return last.sure and not last.renewed and last.kind == sender.kind == "row"
+
+
+def _grid(system: System, own: str, hops: tuple[ClaimedHop, ClaimedHop], chain: str) -> list[Decl]:
+    """The instants from which on values are visible, and those at which they are taken.
+
+    Grid divides both periods, so the distances of the instants are Lag and some grids more.
+    """
+    before, hop = hops
+    assert hop.link is not None
+    one, other = (place_of(system, step.element) for step in hops)
+    step, lag = ref(f"{own}_Grid"), ref(f"{own}_Lag")
+    visible = f"{name_of(hop.link.sender.name)}_Let"
+    grid = math.gcd(period_of(*one), period_of(*other))
+    late = (first_of(*other) - first_of(*one) - hop.link.lasting) % grid
+    shown = number(first_of(*one)), ref(visible), lag
+    apart = first_of(*one) + hop.link.lasting + late - first_of(*other)
+    rounds = times(number(abs(apart) // grid), step)
+    sides = plus(*shown), plus(number(first_of(*other)), rounds)
+    if apart < 0:
+        sides = plus(*shown, rounds), number(first_of(*other))
+    wrong: list[Expr] = [OperatorChain(">=", (lag, step)), OperatorChain("/=", sides)]
+    for period in (_period(system, before), _period(system, hop)):
+        whole = times(OperatorChain("/", (period, step)), step)
+        wrong.append(OperatorChain("/=", (period, whole)))
+    return [
+        stated(step, grid),
+        stated(lag, late),
+        *none_of(wrong, f"chain {chain}", "supposes other instants"),
+    ]
 
 
 def _response(hop: ClaimedHop) -> Expr:

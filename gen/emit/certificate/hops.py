@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.logical import LogicalLink, logical_links
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
 
@@ -42,6 +43,8 @@ class ClaimedHop:
     sure: bool = True
     rare: bool = False
     renewed: str = ""
+    link: LogicalLink | None = None
+    """A row that samples: how its values become visible, where that is known to the instant."""
 
 
 def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
@@ -146,7 +149,11 @@ def _handler(system: System, end: End, hops: list[ClaimedHop]) -> ClaimedHop:
         return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
     if hops and _follows(system, hops[-1], element):
         return ClaimedHop(element, "row", "released")
-    return ClaimedHop(element, "row", "queued" if queued and hops else "sampled")
+    link = None
+    if hops:
+        links = (one for one in logical_links(system) if one.connection.target == end)
+        link = next((one for one in links if hops[-1].element in one.rows), None)
+    return ClaimedHop(element, "row", "queued" if queued and hops else "sampled", link=link)
 
 
 def _follows(system: System, before: ClaimedHop, element: str) -> bool:

@@ -39,6 +39,7 @@ from ravenchart.gen.emit.ada.naming import ada_case, priority
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.model.claims import ChainClaim, Claims
+from ravenchart.gen.model.logical import logical_of
 from ravenchart.gen.model.nodes import SUPERVISOR, Node
 from ravenchart.gen.model.system import SharedObject, System, Task
 
@@ -226,6 +227,11 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items += [stated(f"{own}_T", task.period), stated(f"{own}_D", task.deadline)]
     if has_offset(system, task):
         items.append(stated(f"{own}_O", task.offset))
+    lasting = logical_of(system, task.element)
+    if lasting is not None:
+        items.append(stated(f"{own}_Let", lasting))
+        problem = "makes values visible before its deadline"
+        items.append(refuse(ref(f"{own}_D"), ref(f"{own}_Let"), task.element, problem))
     items += table_terms(task)
     items.append(named_number(f"{own}_J", _jitter(system, task)))
     items += [named_number(name, value) for name, value in sums(task).items()]
@@ -244,6 +250,8 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
         if has_offset(system, task):
             what += ", first O after the epoch of its node"
     text = f"[{task.element}] {what}."
+    if logical_of(system, task.element) is not None:
+        text += " Let: what it sends is visible so long after its release."
     text += f" B: {held[1]} in {held[0].element}." if held else " B: no blocking."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if rare:

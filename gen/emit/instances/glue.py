@@ -10,6 +10,7 @@ logic, and publishes what came out. Logic stays in the component's packages.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ravenchart.gen.derive.crossing import core_of
 from ravenchart.gen.emit.ada.declarations import (
@@ -81,7 +82,7 @@ from ravenchart.gen.emit.language.events import name_of, name_type, null_event
 from ravenchart.gen.emit.language.own_names import event_literal
 from ravenchart.gen.emit.tables.core_units import at_core
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
-from ravenchart.gen.emit.tables.port_calls import CROSSINGS, put_of
+from ravenchart.gen.emit.tables.port_calls import CROSSINGS, VISIBLE, put_of
 from ravenchart.gen.emit.tables.trace_calls import (
     element_constant,
     fault_units,
@@ -90,10 +91,12 @@ from ravenchart.gen.emit.tables.trace_calls import (
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.commands import Need, Provided
 from ravenchart.gen.model.component import Activity, Event, Port, PortKind
+from ravenchart.gen.model.logical import logical_links
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
 from .fills import fill_bodies, fill_specs, queued_regions
+from .instants import counted, instant_objects, units_of_instants
 from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
@@ -157,6 +160,7 @@ class Glue(Site):
             names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
         names |= {ref(root, unit) for unit in self._units_of_ports()}
         names |= answering(self.system, self.instance)
+        names |= set(units_of_instants(self))
         names -= {instance_package(self.system, self.instance), *self._spec_withs()}
         return tuple(sorted(names))
 
@@ -258,7 +262,8 @@ class Glue(Site):
     # --- body: objects
 
     def _body(self) -> tuple[Decl, ...]:
-        items: list[Decl] = [*self._port_objects(), *self._data_objects(), *self._region_objects()]
+        items: list[Decl] = [*instant_objects(self), *self._port_objects()]
+        items += [*self._data_objects(), *self._region_objects()]
         items += [request_queue(self.system, self.instance, one) for one in self._served()]
         items += reply_boards(self.system, self.instance)
         items += call_objects(self.system, self.instance)
@@ -289,7 +294,8 @@ class Glue(Site):
                 case _:
                     activity = next(a for a in component.activities if a.name == slot.name)
                     run = [rows.run_activity(activity)]
-            items += [*run[:-1], executing(run[-1], slot)]
+            last = replace(run[-1], body=(*(run[-1].body or ()), *counted(self, slot)))
+            items += [*run[:-1], executing(last, slot)]
         return tuple(items)
 
     def _board(self, name: str, of_type: Named, initial: Expr, element: str) -> GenericInstance:
@@ -460,12 +466,14 @@ class Glue(Site):
         if port.is_command:
             return call_body(self.system, self.instance, port, self._lost(port.name))
         ends, messages = self._targets(port.name)
+        visible = {one.connection.target for one in logical_links(self.system)}
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
             target = put_of(self.system, end)
             own = target.first == ada_case(self.instance.name)
-            body.append(do(ref(target.last) if own else target, ref("Item")))
+            given = [ref("Item"), *([ref(VISIBLE.name)] if end in visible else [])]
+            body.append(do(ref(target.last) if own else target, *given))
         for message in self.system.messages:
             if message.name in messages:
                 body.append(
@@ -474,8 +482,9 @@ class Glue(Site):
         taken = ends or messages or recorded
         unused = () if taken else (Pragma("Unreferenced", (ref("Item"),)),)
         param = Param("Item", "in", type_name(self.system, port.type))
+        params = (param, VISIBLE) if visible & set(ends) else (param,)
         return Subprogram(
-            f"Send_{ada_case(port.name)}", (param,), declarations=unused, body=tuple(body)
+            f"Send_{ada_case(port.name)}", params, declarations=unused, body=tuple(body)
         )
 
 

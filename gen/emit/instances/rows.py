@@ -24,7 +24,7 @@ from ravenchart.gen.emit.ada.expressions import (
     plain,
     up_to,
 )
-from ravenchart.gen.emit.ada.named import Named, ref
+from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import TRUTH, ada_case, scalar, type_name
 from ravenchart.gen.emit.ada.statements import (
     Assign,
@@ -59,6 +59,7 @@ from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Ser
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
+from .instants import RELEASE, link_to, sends_visibly, visible_of
 from .site import Site
 from .transmission import flow_control, transmits
 
@@ -94,7 +95,9 @@ class Rows(Site):
             limit: Expr = ref(self.component, f"{name}_Port", "Never_Stale")
             if port.max_age is not None:
                 limit = number(port.max_age // period)
-            body.append(do(ref(self._mailbox(port), "Take"), ref(f"{name}_Item"), ref("Status")))
+            now = () if link_to(self, port) is None else (RELEASE,)
+            taken = ref(f"{name}_Item"), ref("Status")
+            body.append(do(ref(self._mailbox(port), "Take"), *now, *taken))
             body.append(
                 do(
                     ref(self.component, f"{name}_Port", "Handle"),
@@ -287,7 +290,7 @@ class Rows(Site):
         for port in self.instance.component.outputs():
             if port.name in region.sends and not self._is_idle(port):
                 box = ref("Box", ada_case(port.name))
-                item = () if port.is_void else arguments(box)
+                item = () if port.is_void else arguments(box, *self._visible(region.name, port))
                 send = Do(send_flag(port), item)
                 moved.append(IfStatement(((ref("Box", f"{ada_case(port.name)}_Sent"), (send,)),)))
         if region.raises:
@@ -426,13 +429,17 @@ class Rows(Site):
             local = f"{idle}{name}_Value"
             declarations.append(Object(local, type_name(self.system, port.type)))
             args.append(Arg(name, ref(local)))
-            send = do(send_flag(port), ref(local))
+            send = do(send_flag(port), ref(local), *self._visible(activity.name, port))
         if has_flag(activity, port):
             flag, asked = send_flag(port), f"{idle}{send_flag(port)}_Asked"
             declarations.append(Object(asked, "Boolean"))
             args.append(Arg(flag, ref(asked)))
             send = IfStatement(((ref(asked), (send,)),))
         return [] if idle else [send]
+
+    def _visible(self, row: str, port: Port) -> tuple[DottedName, ...]:
+        """From when on what a row sends is visible, where its port has to be told."""
+        return (visible_of(row),) if sends_visibly(self, port.name) else ()
 
     def _active_in(self, region: Region, state: str, declarations: list[Decl]) -> Expr:
         now = f"{ada_case(region.name)}_Now"

@@ -70,9 +70,7 @@ class Site:
         targets += [t for m in self.system.messages for t in m.targets]
         names = {t.name for t in targets if t.instance == self.instance.name}
         names |= {poll.port for poll in self.system.polls if poll.instance == self.instance.name}
-        if self.noted:
-            return self.instance.component.inputs()
-        here = (p for p in self.instance.component.inputs() if p.name in names)
+        here = (p for p in self.instance.component.inputs() if self.noted or p.name in names)
         return tuple(p for p in here if not self._crosses(p))
 
     def _crosses(self, port: Port) -> bool:

@@ -67,9 +67,10 @@ from ravenchart.gen.emit.ada.statements import (
 )
 from ravenchart.gen.emit.instances.fills import FILL, queued_regions, read_name
 from ravenchart.gen.emit.tables.core_units import at_core
-from ravenchart.gen.emit.tables.port_calls import CROSSINGS
+from ravenchart.gen.emit.tables.port_calls import CROSSINGS, VISIBLE
 from ravenchart.gen.emit.tables.trace_calls import fault, fault_units, note, traced
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
+from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.nodes import DRAIN_PERIOD
@@ -84,6 +85,7 @@ LOOKS = 200
 
 BOARDS, QUEUES = ref("Ravenchart.Crossing_Boards"), ref("Ravenchart.Crossing_Queues")
 SAMPLES, LOOPS = ref("Ravenchart.Crossing_Samples"), ref("Ravenchart.Periodic_Loops")
+LOGICAL = ref("Ravenchart.Logical_Samples")
 SUM = "Ravenchart.Sum"
 
 
@@ -105,8 +107,7 @@ def emit_crossings(system: System, header: str) -> list[Unit]:
         assert isinstance(sent.item, Package)
         bodies += sent.item.items
         context |= set(sent.withs)
-    sampled = {one.port.kind is PortKind.SAMPLED for one in found}
-    generics = {SAMPLES if kind else QUEUES for kind in sampled}
+    generics = {_generic(one) for one in found}
     name = ref(root, CROSSINGS)
     return [
         Unit(header, tuple(sorted(generics)), Package(name, tuple(spec), (SPARK,))),
@@ -117,18 +118,28 @@ def emit_crossings(system: System, header: str) -> list[Unit]:
 def _mailbox(system: System, one: Crossing) -> Iterator[Decl]:
     own, element = constant_name(one.element), type_name(system, one.port.type)
     args = arguments(Element_Type=element, Null_Element=default_value(system, one.port.type))
-    yield Comment(f"[{one.element}] from core {one.sent_on} to core {one.taken_on}")
-    if one.port.kind is PortKind.SAMPLED:
-        yield GenericInstance(own, SAMPLES, args)
-    else:
+    cores = f"from core {one.sent_on} to core {one.taken_on}"
+    if one.logical is not None:
+        cores = f"visible {shown(one.logical.lasting)} after the release of {one.senders[0]}"
+        args += arguments(Depth=number(one.logical.depth))
+    elif one.port.kind is PortKind.QUEUED:
         args += arguments(Capacity=number(one.port.depth))
-        yield GenericInstance(own, QUEUES, args)
+    yield Comment(f"[{one.element}] {cores}")
+    yield GenericInstance(own, _generic(one), args)
     yield Subprogram(f"Put_{own}", _value(system, one))
     yield Comment(f"[{one.element}.mailbox] called by {one.senders[0]} alone; never waits.")
 
 
+def _generic(one: Crossing) -> DottedName:
+    """The generic of a mailbox."""
+    if one.logical is not None:
+        return LOGICAL
+    return SAMPLES if one.port.kind is PortKind.SAMPLED else QUEUES
+
+
 def _value(system: System, one: Crossing) -> tuple[Param, ...]:
-    return (Param("Item", "in", type_name(system, one.port.type)),)
+    item = Param("Item", "in", type_name(system, one.port.type))
+    return (item,) if one.logical is None else (item, VISIBLE)
 
 
 def _putting(system: System, one: Crossing, header: str) -> Unit:
@@ -137,7 +148,8 @@ def _putting(system: System, one: Crossing, header: str) -> Unit:
     noted = note(system, "Arrived", one.element, "port")
     declarations: list[Decl] = []
     if one.port.kind is PortKind.SAMPLED:
-        body: list[Stmt] = [*noted, do(ref(own, "Put"), ref("Item"))]
+        given = [ref(param.name) for param in _value(system, one)]
+        body: list[Stmt] = [*noted, do(ref(own, "Put"), *given)]
     else:
         declarations += [
             UseType("Ravenchart.Queueing.Put_Status"),

@@ -107,7 +107,8 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
 
 def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
     """The units that instances need of it in a simulation."""
-    return (_health(system, header), _elements(system, header))
+    crossings = emit_crossings(system, header)
+    return (_health(system, header), _elements(system, header), *crossings)
 
 
 def _health(system: System, header: str, core: int = MAIN_CORE) -> Unit:

@@ -52,9 +52,11 @@ from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID
+from ravenchart.gen.emit.tables.port_calls import CROSSINGS, put_of
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
 from ravenchart.gen.model.component import Port
-from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.logical import logical_links
 from ravenchart.gen.model.system import Processor, Slot, System
 
 INTEGER = ref("Long_Long_Integer")
@@ -113,6 +115,7 @@ def emit_simulation(system: System, header: str) -> Unit:
     withs = {ref(root, ada_case(i.name)) for i in system.instances}
     withs |= {ref(root, component_name(i.component)) for i in system.instances}
     withs |= {ref("Ravenchart.Simulated_Runs"), ref("Ravenchart.Steps")}
+    withs |= {ref(root, CROSSINGS)} if logical_links(system) else set()
     withs |= {ref(root, LIFECYCLE)} if has_lifecycle(system) else set()
     releases: list[tuple[Choice, tuple[Stmt, ...]]] = []
     for position, processor in enumerate(order, 1):
@@ -257,7 +260,10 @@ def _taken(
     ports: tuple[Port, ...] = instance.component.inputs()
     if any(p.name == what for p in ports):
         assert value is not None
-        steps.append(do(ref(target, f"Put_{ada_case(what)}"), value))
+        end = End(name, what)
+        links = {one.connection.target for one in logical_links(system)}
+        now = (call("Ravenchart.Nanoseconds", ref("Ravenchart.Steps.Now")),) if end in links else ()
+        steps.append(do(ref(root, put_of(system, end)), value, *now))
     else:
         event = event_value(instance.component, what, value, root=root)
         steps.append(do(ref(target, "Offer"), event))

@@ -6,13 +6,17 @@
 from __future__ import annotations
 
 from ravenchart.gen.derive.crossing import crosses
+from ravenchart.gen.emit.ada.declarations import Param
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case, constant_name
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import System
 
 CROSSINGS = "Crossings"
-"""The package of all that goes from core to core, below the system's."""
+"""The package of all that goes from core to core, or is visible at its instants only."""
+
+VISIBLE = Param("Visible", "in", "Ravenchart.Nanoseconds")
+"""From when on a value is visible, where its sender has a logical execution time."""
 
 
 def put_of(system: System, end: End) -> DottedName:

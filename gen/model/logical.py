@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: Ravenchart contributors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Connections whose values become visible when a logical execution time ends.
+
+A row of a processor with a logical execution time L, released at r, makes its values visible at
+r + L, and a row reads what is visible at its own release (Henzinger, Horowitz, Kirsch, Giotto: a
+time-triggered language for embedded programming, Proceedings of the IEEE 91, 2003). So times of
+execution, priorities and cores decide nothing. Between rows of one processor the order of the
+table decides, as always.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ravenchart.gen.language.terms import Ns
+
+from .component import PortKind
+from .instances import Connection
+from .system import Processor, Slot, System
+
+
+@dataclass(frozen=True, slots=True)
+class LogicalLink:
+    """Such a connection: the sending rows, and the handler of the sampled port that it ends at."""
+
+    connection: Connection
+    sender: Processor
+    receiver: Processor
+    lasting: Ns
+    """The logical execution time."""
+    rows: tuple[str, ...]
+    """The elements of the rows that send."""
+    depth: int
+    """Values that the mailbox keeps.
+
+    While the handler runs, at most D after its release r, the sender may have put in what becomes
+    visible after r: values of releases from r - L on, and before r + D. One more is visible at r.
+    """
+
+    @property
+    def handler(self) -> str:
+        """The element of the row that takes the values."""
+        return f"{self.connection.target.instance}.ports"
+
+
+def logical_links(system: System) -> tuple[LogicalLink, ...]:
+    """Every one of a system, in the order of its connections."""
+    if all(processor.logical is None for processor in system.processors):
+        return ()
+    return tuple(_links(system))
+
+
+def logical_of(system: System, element: str) -> Ns | None:
+    """The logical execution time of a processor that has one; None for any other task."""
+    return next((one.logical for one in system.processors if one.name == element), None)
+
+
+def period_of(processor: Processor, slot: Slot) -> Ns:
+    """The time between two executions of a row of a periodic processor."""
+    return Ns(slot.divisor * processor.period)
+
+
+def first_of(processor: Processor, slot: Slot) -> Ns:
+    """The release of its first execution, from the epoch."""
+    return Ns(processor.offset + slot.phase * processor.period)
+
+
+def place_of(system: System, element: str) -> tuple[Processor, Slot]:
+    """A row, and the processor that runs it; KeyError where none does."""
+    processor = system.processor_of(element)
+    return processor, next(slot for slot in processor.slots if slot.element == element)
+
+
+def saved_wait(one: tuple[Processor, Slot], other: tuple[Processor, Slot], lasting: int) -> int:
+    """How much less than its period a row waits at most for what another one makes visible.
+
+    Both count from one epoch. The instants at which values become visible, and the releases of the
+    reader, meet in a grid of g = gcd of both periods. From an instant of the first to the next of
+    the second the greatest distance is T - g + d, with d the distance of the two grids: so g - d
+    is saved. By the same argument the value that is read became visible at most T - (g - d) ago,
+    with the period T of the sender.
+    """
+    grid = math.gcd(period_of(*one), period_of(*other))
+    return grid - (first_of(*other) - first_of(*one) - lasting) % grid
+
+
+def _links(system: System) -> Iterator[LogicalLink]:
+    for connection in system.connections:
+        source = system.instance(connection.source.instance)
+        rows = tuple(
+            f"{source.name}.{row.name}" for row in source.component.senders(connection.source.name)
+        )
+        places = [place_of(system, row) for row in rows]
+        port = system.instance(connection.target.instance).component.port(connection.target.name)
+        logical = next((p for p, _ in places if p.logical is not None), None)
+        if logical is None or logical.logical is None or port.kind is not PortKind.SAMPLED:
+            continue
+        receiver = system.processor_of(f"{connection.target.instance}.ports")
+        if receiver.name == logical.name or receiver.released_by is not None:
+            continue
+        period = math.gcd(*(period_of(processor, slot) for processor, slot in places))
+        ahead = logical.logical + receiver.deadline
+        depth = 1 + -(-ahead // period)
+        yield LogicalLink(connection, logical, receiver, logical.logical, rows, depth)
