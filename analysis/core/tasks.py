@@ -126,6 +126,11 @@ class Task:
         return Fraction(total, self.period * self.frame_count)
 
 
+def without_phases(task: Task) -> Task:
+    """The same task with a job that executes all rows: no phases demand more."""
+    return replace(task, rows=tuple(replace(row, phase=0) for row in task.rows))
+
+
 def with_full_jobs(task: Task) -> Task:
     """The same task with every row in every job, at any time, as in a calculation by hand."""
     return replace(task.at_any_time(), wcet=task.plain_wcet, rows=())

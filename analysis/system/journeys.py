@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import first_of, logical_links, period_of, place_of
+from ravenchart.gen.model.logical import first_of, logical_links, period_of, timed_row
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
@@ -54,8 +54,8 @@ class Journey:
 class Stage(NamedTuple):
     """The times of the records at a place, and the starts of the row whose job wrote them.
 
-    ``later``: when a journey goes on that has come to each record, where that is at another time:
-    when its value becomes visible, or when the row ran whose releases the times are.
+    ``later``: when a journey that has come to a record goes on, where that is at another time. A
+    value may become visible later, and a row runs after the release that the times have.
     """
 
     times: Sequence[int]
@@ -139,6 +139,6 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
 
 def _releases(system: System, row: str, times: Sequence[int]) -> list[int]:
     """The releases of the executions of a row in which these times are, all deadlines met."""
-    place = place_of(system, row)
+    place = timed_row(system, row)
     first, period = first_of(*place), period_of(*place)
     return [first + (time - first) // period * period for time in times]

@@ -33,7 +33,7 @@ from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import logical_links, place_of, saved_wait
+from ravenchart.gen.model.logical import logical_links, saved_wait, timed_row
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
@@ -248,7 +248,7 @@ class Latencies:
         """The step, with the instants from which on it sees the values of the one before."""
         for link in logical_links(self.system):
             if link.connection.target == place and before in link.rows:
-                rows = place_of(self.system, before), place_of(self.system, step.name)
+                rows = timed_row(self.system, before), timed_row(self.system, step.name)
                 saved = saved_wait(*rows, link.lasting)
                 return replace(step, lasting=link.lasting, saved=saved)
         return step

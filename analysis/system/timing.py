@@ -17,7 +17,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
-from ravenchart.analysis.core.tasks import with_full_jobs
+from ravenchart.analysis.core.tasks import with_full_jobs, without_phases
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.system import Chain, Stop, System
 from ravenchart.gen.model.system import Task as ModelTask
@@ -75,10 +75,11 @@ class Analysis:
 
     @cached_property
     def for_all_offsets(self) -> Analysis:
-        """The same where offsets are unknown: itself where none made a response shorter."""
-        if not any(response.alignment for response in self.responses):
+        """The same where offsets and phases are unknown: itself where none counts."""
+        phased = any(row.phase for task in self.network.tasks for row in task.rows)
+        if not phased and not any(response.alignment for response in self.responses):
             return self
-        tasks = tuple(task.at_any_time() for task in self.network.tasks)
+        tasks = tuple(without_phases(task.at_any_time()) for task in self.network.tasks)
         network = replace(self.network, tasks=tasks)
         return replace(self, network=network, found=holistic.analyse(network))
 

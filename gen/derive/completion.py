@@ -42,9 +42,10 @@ def table_deadline(slots: Iterable[Slot], period: Ns) -> Ns:
 
 
 def _with_divisors(processor: Processor) -> Processor:
-    """Each row's divisor: how many releases lie between two of its runs."""
+    """Each row's divisor: how many releases lie between two of its runs, and its phase."""
+    period = processor.period
     slots = tuple(
-        replace(slot, divisor=slot.timing.period // processor.period, phase=0)
+        replace(slot, divisor=slot.timing.period // period, phase=slot.after // period)
         for slot in processor.slots
     )
     deadline = min(processor.deadline, processor.period)

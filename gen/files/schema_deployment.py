@@ -219,6 +219,10 @@ class ProcessorForm(Element):
         min_length=1,
         max_length=1024,
     )
+    phases: dict[PathReference, Span] | None = optional(
+        "Of rows with a longer period than the processor's: the time of the first execution, after "
+        "the first release of the processor. A multiple of its period, below that of the row."
+    )
     on_deadline_miss: list[StarredReference] | None = optional(
         "`instance.Event`s raised when a release completes after the deadline."
     )

@@ -4,10 +4,10 @@
 """Connections whose values become visible when a logical execution time ends.
 
 A row of a processor with a logical execution time L, released at r, makes its values visible at
-r + L, and a row reads what is visible at its own release (Henzinger, Horowitz, Kirsch, Giotto: a
-time-triggered language for embedded programming, Proceedings of the IEEE 91, 2003). So times of
-execution, priorities and cores decide nothing. Between rows of one processor the order of the
-table decides, as always.
+r + L. A row reads the values that are visible at its own release. See Henzinger, Horowitz, Kirsch,
+Giotto: a time-triggered language for embedded programming, Proceedings of the IEEE 91, 2003. So
+times of execution, priorities and cores decide nothing. Between rows of one processor the order
+of the table decides, as always.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class LogicalLink:
     depth: int
     """Values that the mailbox keeps.
 
-    While the handler runs, at most D after its release r, the sender may have put in what becomes
-    visible after r: values of releases from r - L on, and before r + D. One more is visible at r.
+    The handler runs at most D after its release r. By then the sender may have put in values that
+    become visible after r: those of releases from r - L on, and before r + D. One more is visible.
     """
 
     @property
@@ -69,7 +69,7 @@ def first_of(processor: Processor, slot: Slot) -> Ns:
     return Ns(processor.offset + slot.phase * processor.period)
 
 
-def place_of(system: System, element: str) -> tuple[Processor, Slot]:
+def timed_row(system: System, element: str) -> tuple[Processor, Slot]:
     """A row, and the processor that runs it; KeyError where none does."""
     processor = system.processor_of(element)
     return processor, next(slot for slot in processor.slots if slot.element == element)
@@ -78,11 +78,10 @@ def place_of(system: System, element: str) -> tuple[Processor, Slot]:
 def saved_wait(one: tuple[Processor, Slot], other: tuple[Processor, Slot], lasting: int) -> int:
     """How much less than its period a row waits at most for what another one makes visible.
 
-    Both count from one epoch. The instants at which values become visible, and the releases of the
-    reader, meet in a grid of g = gcd of both periods. From an instant of the first to the next of
-    the second the greatest distance is T - g + d, with d the distance of the two grids: so g - d
-    is saved. By the same argument the value that is read became visible at most T - (g - d) ago,
-    with the period T of the sender.
+    Both count from one epoch. The instants at which values become visible are in steps of g, the
+    gcd of both periods, and so are the releases of the reader. Let d be the distance of the two
+    grids. The longest wait is T - g + d, so g - d is saved. In the same way the value that is read
+    became visible at most T - g + d ago, with the period T of the sender.
     """
     grid = math.gcd(period_of(*one), period_of(*other))
     return grid - (first_of(*other) - first_of(*one) - lasting) % grid
@@ -94,7 +93,7 @@ def _links(system: System) -> Iterator[LogicalLink]:
         rows = tuple(
             f"{source.name}.{row.name}" for row in source.component.senders(connection.source.name)
         )
-        places = [place_of(system, row) for row in rows]
+        places = [timed_row(system, row) for row in rows]
         port = system.instance(connection.target.instance).component.port(connection.target.name)
         logical = next((p for p, _ in places if p.logical is not None), None)
         if logical is None or logical.logical is None or port.kind is not PortKind.SAMPLED:

@@ -61,6 +61,8 @@ class Slot:
     timing: Timing
     divisor: int
     phase: int
+    after: Ns = NO_TIME
+    """The time of its first execution, after the first release of the processor."""
 
     @property
     def element(self) -> str:

@@ -201,6 +201,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         )
     )
     sound = tuple(slot for slot in slots if slot is not None)
+    sound = _phased(name, form, sound, findings)
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
     period = table_period(own) if form.period is None else Ns(form.period)
@@ -235,6 +236,26 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         released_at=None if releaser is None else form.at("released_by"),
         logical=None if form.logical_execution_time is None else Ns(form.logical_execution_time),
     )
+
+
+def _phased(
+    name: str, form: ProcessorForm, slots: tuple[Slot, ...], findings: Findings
+) -> tuple[Slot, ...]:
+    """The rows of a table with the phases that the processor gives."""
+    given: dict[str, Ns] = {}
+    rows = {slot.element.lower(): slot for slot in slots}
+    for text, phase in (form.phases or {}).items():
+        at = form.entry_at("phases", text)
+        slot = rows.get(text.lower())
+        if slot is None or slot.of_bus or form.released_by is not None:
+            message = f"`phases` of {name} names {text}, which is no periodic row of its table"
+            if not form.list_damaged("activities") and not form.lost("released_by"):
+                names = [row.element for row in slots if not row.of_bus]
+                hint = meant(text, names) or "name a row of its table as `instance.row`"
+                findings.error("RV-0305", at, message, hint=hint)
+            continue
+        given[slot.element] = Ns(phase)
+    return tuple(replace(slot, after=given.get(slot.element, slot.after)) for slot in slots)
 
 
 def _logical(name: str, form: ProcessorForm, period: Ns, findings: Findings) -> Ns:

@@ -374,7 +374,7 @@ def periods_are_multiples(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def offsets_are_shorter_than_periods(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The first release comes within the first period."""
+    """The first release comes within the first period, and so does the first execution of a row."""
     for processor in resolved.system.processors:
         if processor.offset >= processor.period:
             message = (
@@ -382,6 +382,20 @@ def offsets_are_shorter_than_periods(resolved: Resolved) -> Iterator[Diagnostic]
                 f"its period, {shown(processor.period)}"
             )
             yield error("RV-0708", processor.origin, message)
+        for slot in processor.slots:
+            yield from _unfit_phase(processor, slot)
+
+
+def _unfit_phase(processor: Processor, slot: Slot) -> Iterator[Diagnostic]:
+    """The first execution of a row is in a release of its first period."""
+    base, period, phase = processor.period, slot.timing.period, slot.after
+    if period % base == 0 and phase and (phase % base or phase >= period):
+        message = (
+            f"the phase of {slot.element}, {shown(phase)}, is no multiple of {shown(base)}, the "
+            f"period of {processor.name}, below {shown(period)}, its own"
+        )
+        below = min(phase // base * base, period - base)
+        yield error("RV-0708", slot.origin, message, hint=f"{shown(below)} would fit")
 
 
 def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:

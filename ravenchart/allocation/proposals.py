@@ -3,7 +3,8 @@
 
 """The periodic rows of a model put together anew, and checked.
 
-Sporadic processors, drivers and the host probe stay as they are. The strategies search with
+Sporadic processors, drivers and the host probe stay as they are, and so do processors with a
+logical execution time or phases. The strategies search with
 the drivers and sporadic processors above all tables. Their tables are completed as a model
 is, and analysed as one with its messages, chains and queues. Where a limit of these is not
 kept, `search` moves rows. Rows of a table keep the order that they have in the model: a row
@@ -14,7 +15,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from ravenchart.analysis.core import allocation
@@ -71,6 +72,10 @@ class WantedTable:
     rows: tuple[str, ...]
     raises: Mapping[str, tuple[str, ...]]
     """By the key that says when: the events that it raises."""
+    logical: int | None = None
+    """The logical execution time of one that stays as it is."""
+    phases: Mapping[str, int] = field(default_factory=dict)
+    """Those of its rows."""
 
 
 class Judge:
@@ -79,10 +84,10 @@ class Judge:
     def __init__(self, system: System) -> None:
         """Of the model whose rows are to move."""
         self.system = system
-        self.kept = [one for one in system.processors if one.released_by is not None]
-        """Sporadic processors."""
-        self.moved = [one for one in system.processors if one.released_by is None]
-        """Periodic ones."""
+        self.kept = [one for one in system.processors if _stays(one)]
+        """Sporadic processors, and those with instants that the model gives."""
+        self.moved = [one for one in system.processors if not _stays(one)]
+        """All others."""
         self.home = {slot.element: (one, slot) for one in self.moved for slot in one.slots}
         """Where each row of theirs is."""
 
@@ -98,6 +103,12 @@ class Judge:
         short = sum(one.wcet < self.system.node(one.node).critical_section for one in made)
         short += len(list(too_long(told)))
         return Judged(tables, None, short) if short else Judged(tables, analyse(told))
+
+
+def _stays(processor: Processor) -> bool:
+    """Whether a processor stays as it is: other tables would change when values are visible."""
+    phased = any(slot.after for slot in processor.slots)
+    return processor.released_by is not None or processor.logical is not None or phased
 
 
 RankOf = Callable[[list[Table]], Rank]
@@ -232,6 +243,11 @@ def yaml(proposal: Proposal) -> str:
         lines.append(f"    period: {duration(one.period)}")
         if one.offset:
             lines.append(f"    offset: {duration(one.offset)}")
+        if one.logical is not None:
+            lines.append(f"    logical_execution_time: {duration(one.logical)}")
+        if one.phases:
+            lines.append("    phases:")
+            lines += [f"      {row}: {duration(time)}" for row, time in one.phases.items()]
         lines += [
             f"    deadline: {duration(one.deadline)}",
             f"    stack: {one.stack_bytes} B",
@@ -310,6 +326,8 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             one.stack_bytes,
             tuple(slot.element for slot in one.slots),
             dict(_reactions(one)),
+            one.logical,
+            {slot.element: slot.after for slot in one.slots if slot.after},
         )
         for one in _written(proposal.system)
     )

@@ -35,6 +35,7 @@ class Row:
     wcet: int
     deadline: int
     divisor: int = 1
+    phase: int = 0
 
 
 @dataclass(slots=True)
@@ -345,8 +346,10 @@ class Deployment:
         shortest = min(ends, default=period)
         lasting = form.time("logical_execution_time", 0)
         deadline = min(form.time("deadline", shortest), shortest, period, lasting or period)
+        phases = form.map("phases")
         for row in rows:
             row.divisor = row.period // period
+            row.phase = phases.time(phases.name(row.element) or "", 0) // period
         by = form.text("released_by") or ""
         return Task(
             element=f"{name}_{node}" if several else name,

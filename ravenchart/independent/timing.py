@@ -161,7 +161,7 @@ class Timing:
             if not task.sporadic:
                 timed = own if all(one.divisor == 1 for one in task.rows) else name
                 self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
-                self.same("rows", f"{timed}_Phase", 0, f"the phase {what}")
+                self.same("rows", f"{timed}_Phase", row.phase, f"the phase {what}")
         for divisor, wcet in self.wcets(task).items():
             letter = "C" if divisor == 1 else f"C_{divisor}"
             self.same("sums", f"{own}_{letter}", wcet, f"the sum of WCETs {why}")

@@ -20,7 +20,7 @@ is
       Initial      => (others => <>));
 
    Sent : Values.History;
-   --  What has been sent: of the sender alone.
+   --  The last values: of the sender alone.
 
    Next : Nanoseconds := 0;
    --  Values that become visible before it were taken, or left out: of the

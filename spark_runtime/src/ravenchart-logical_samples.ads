@@ -1,9 +1,9 @@
 --  SPDX-FileCopyrightText: Ravenchart contributors
 --  SPDX-License-Identifier: Apache-2.0
 
---  The mailbox of a sampled port whose sender has a logical execution time: a
---  value is visible from the end of that time on, and not when its computation
---  happens to be over. So which value is taken follows from releases alone.
+--  The mailbox of a sampled port whose sender has a logical execution time. A
+--  value is visible from the end of that time on, whenever its computation is
+--  over. So releases alone decide which value is taken.
 --
 --  Guarantees   Take hands over the newest value that is visible at Now, each
 --               once (contract of Histories.Newest). No value that is visible

@@ -125,5 +125,5 @@ def test_a_value_is_seen_at_the_first_release_after_its_instant() -> None:
     found = _simulated(TEXT)
     #  made at 0, 5, ...: visible from 3, 8, ... on; taken at 1, 21, 41, ...
     assert found["sink_1.seen"][:5] == [0, 4, 8, 12, 16]
-    #  taken at 2, 12, 22, ... by a row of 10 ms
-    assert found["fast_1.newest"][:4] == [0, 2, 4, 6]
+    #  taken at 7, 17, 27, ... by a row of 10 ms with a phase of 5 ms
+    assert found["fast_1.newest"][:4] == [1, 3, 5, 7]

@@ -22,6 +22,7 @@ NAMES = (
     *(f"runtime-{driver}" for driver in house.DRIVERS),
     house.FLOATS,
     house.VALUES,
+    house.LOGICAL,
     house.BUS,
     house.KERNEL,
     *(record for name, at in PROGRAMS.items() for record in house.record_names(name, at)),

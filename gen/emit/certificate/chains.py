@@ -16,7 +16,7 @@ from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Comment
 from ravenchart.gen.model.claims import ChainClaim
-from ravenchart.gen.model.logical import first_of, period_of, place_of
+from ravenchart.gen.model.logical import first_of, period_of, timed_row
 from ravenchart.gen.model.system import Chain, Processor, System
 
 from .hops import ClaimedHop, hops_of
@@ -131,7 +131,7 @@ def _grid(system: System, own: str, hops: tuple[ClaimedHop, ClaimedHop], chain: 
     """
     before, hop = hops
     assert hop.link is not None
-    one, other = (place_of(system, step.element) for step in hops)
+    one, other = (timed_row(system, step.element) for step in hops)
     step, lag = ref(f"{own}_Grid"), ref(f"{own}_Lag")
     visible = f"{name_of(hop.link.sender.name)}_Let"
     grid = math.gcd(period_of(*one), period_of(*other))

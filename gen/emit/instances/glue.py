@@ -96,7 +96,7 @@ from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
 from .fills import fill_bodies, fill_specs, queued_regions
-from .instants import counted, instant_objects, units_of_instants
+from .instants import instant_objects, next_instants, units_of_instants
 from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
 from .releasing import releases, wait_body, wait_spec
 from .rows import Rows
@@ -294,7 +294,7 @@ class Glue(Site):
                 case _:
                     activity = next(a for a in component.activities if a.name == slot.name)
                     run = [rows.run_activity(activity)]
-            last = replace(run[-1], body=(*(run[-1].body or ()), *counted(self, slot)))
+            last = replace(run[-1], body=(*(run[-1].body or ()), *next_instants(self, slot)))
             items += [*run[:-1], executing(last, slot)]
         return tuple(items)
 

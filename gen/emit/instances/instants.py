@@ -19,7 +19,7 @@ from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact, timed_b
 from ravenchart.gen.emit.certificate.terms import plus, times
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import LogicalLink, first_of, logical_links, period_of, place_of
+from ravenchart.gen.model.logical import LogicalLink, first_of, logical_links, period_of, timed_row
 from ravenchart.gen.model.system import Processor, Slot
 
 from .site import Site
@@ -53,7 +53,7 @@ def instant_objects(site: Site) -> Iterator[Decl]:
     if any(_counting(site)) and not site.noted:
         yield UseType("Ravenchart.Nanoseconds")
     for slot, held, lasting in _counting(site):
-        processor, _ = place_of(site.system, slot.element)
+        processor, _ = timed_row(site.system, slot.element)
         begin: Expr = number(first_of(processor, slot) + lasting)
         if not site.noted:
             late = times(_timed(processor, slot, "Phase"), fact(processor.name, "T"))
@@ -66,12 +66,12 @@ def instant_objects(site: Site) -> Iterator[Decl]:
         yield Object(held, "Ravenchart.Nanoseconds", begin)
 
 
-def counted(site: Site, slot: Slot) -> tuple[Stmt, ...]:
+def next_instants(site: Site, slot: Slot) -> tuple[Stmt, ...]:
     """At the end of an execution of a row: the instant of the next one."""
     found = []
     for one, held, _ in _counting(site):
         if one.element == slot.element:
-            processor, _ = place_of(site.system, slot.element)
+            processor, _ = timed_row(site.system, slot.element)
             period: Expr = number(period_of(processor, slot))
             if not site.noted:
                 period = times(_timed(processor, slot, "Divisor"), fact(processor.name, "T"))

@@ -51,7 +51,7 @@ def ids(one: Listing) -> str:
 
 @pytest.mark.parametrize("model", WHOLE, ids=ids)
 def test_a_whole_model_is_accepted(model: Listing, tmp_path: Path, capsys: PRINTED) -> None:
-    assert len(WHOLE) == 7
+    assert len(WHOLE) == 8
     (tmp_path / "model.yaml").write_text(model.text, encoding="utf-8")
     assert main(["check", str(tmp_path / "model.yaml")]) == 0
     assert capsys.readouterr().err == ""
