@@ -11,7 +11,16 @@ from dataclasses import dataclass
 from .blocking import Section, held_up
 from .multiframe import Demand
 from .platform import Platform
-from .responses import Level, Reason, Response, RowResponse, demand_of, jitter_of, switch_time
+from .responses import (
+    Level,
+    Reason,
+    Response,
+    RowResponse,
+    demand_of,
+    interference_of,
+    jitter_of,
+    switch_time,
+)
 from .tasks import Task
 from .window import Effort, Source, Window, source
 
@@ -42,7 +51,7 @@ class Contender:
             before = task.wcet + switch_time(task, platform)
             goals += _row_goals(task, before)
             goals.sort()
-        item = source(task.period, jitter, demand)
+        item = source(task.period, jitter, interference_of(task, platform))
         return cls(task, jitter, demand, item, serial, tuple(goals))
 
     @property

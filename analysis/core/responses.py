@@ -13,7 +13,7 @@ from .blocking import Section, held_up
 from .multiframe import Demand
 from .platform import Platform
 from .streams import Stream
-from .tasks import TableRow, Task
+from .tasks import TableRow, Task, without_phases
 from .window import execution_of, releases_in, source
 
 
@@ -68,7 +68,7 @@ class Level:
         for task in self.order:
             load += Fraction(release_time(task, platform), task.period)
         for task in self.order[: self.reach]:
-            demand = demand_of(task, platform)
+            demand = interference_of(task, platform)
             load += Fraction(demand.total, len(demand.wcets) * task.period)
         return load
 
@@ -233,7 +233,7 @@ class Response:
     def _taken_by(self, other: Task) -> Interference:
         """The interference of ``other``, with its known jobs of the cycle or the longest ones."""
         count, platform = self._releases(other), self.level.platform
-        demand = demand_of(other, platform)
+        demand = interference_of(other, platform)
         switches = count * switch_time(other, platform)
         if self.uses_offset_of(other):
             stream, span = stream_of(other, platform), self._span(other)
@@ -264,6 +264,11 @@ def demand_of(task: Task, platform: Platform) -> Demand:
     if not task.rows:
         return Demand((extra,))
     return Demand(tuple(extra + sum(row.wcet for row in rows) for rows in task.frames))
+
+
+def interference_of(task: Task, platform: Platform) -> Demand:
+    """The demand of the releases of ``task`` as others count it."""
+    return demand_of(without_phases(task) if task.summed else task, platform)
 
 
 def stream_of(task: Task, platform: Platform) -> Stream:

@@ -58,6 +58,7 @@ class Task:
                          the work of making it ready
         ``offset``     arrival of job 0 of the cycle, after an epoch; None where unknown
         ``epoch``      the epoch of the offset; the distance of two epochs of a core is unknown
+        ``summed``     others count each row by itself, as if phases kept no two rows apart
     """
 
     name: str
@@ -75,6 +76,7 @@ class Task:
     suspensions: int = 1
     offset: int | None = None
     epoch: str = ""
+    summed: bool = False
 
     def __post_init__(self) -> None:
         """Refuse values out of range, with a ValueError that names field and task."""
@@ -126,9 +128,15 @@ class Task:
         return Fraction(total, self.period * self.frame_count)
 
 
+def is_phased(task: Task) -> bool:
+    """Whether phases keep rows of the task apart."""
+    return any(row.phase for row in task.rows)
+
+
 def without_phases(task: Task) -> Task:
     """The same task with a job that executes all rows: no phases demand more."""
-    return replace(task, rows=tuple(replace(row, phase=0) for row in task.rows))
+    rows = tuple(replace(row, phase=0) for row in task.rows)
+    return replace(task, rows=rows, summed=False)
 
 
 def with_full_jobs(task: Task) -> Task:

@@ -18,7 +18,14 @@ from ravenchart.analysis.core.bus import Bus
 from ravenchart.analysis.core.can_response import ERRORS, FrameResponse
 from ravenchart.analysis.core.chains import HopKind
 from ravenchart.analysis.core.offsets import OffsetSearch, aligned
-from ravenchart.analysis.core.responses import Response, demand_of, jitter_of, release_time
+from ravenchart.analysis.core.responses import (
+    Response,
+    demand_of,
+    interference_of,
+    jitter_of,
+    release_time,
+)
+from ravenchart.analysis.core.tasks import is_phased
 from ravenchart.analysis.core.window import Effort, Window, constant_source, source
 from ravenchart.analysis.system import latencies
 from ravenchart.analysis.system.authentication import authentications
@@ -100,10 +107,13 @@ def by_offsets(analysis: Analysis) -> dict[str, tuple[Ns, ...]]:
     if blind is analysis:
         return {}
     offsets = {task.name: task.offset for task in analysis.network.tasks}
+    phased = {task.name for task in analysis.network.tasks if is_phased(task)}
     found = {}
     for name in blind.failed():
         response = blind.found.responses[name]
         if isinstance(response, Response) and response.bound is not None:
+            if any(one.name in phased for one in response.level.order):
+                continue  # the instants of a certificate know no phases
             windows = _since(response, offsets, analysis)
             if windows is not None:
                 found[name] = windows
@@ -150,7 +160,7 @@ def _jobs(response: Response) -> list[int]:
     platform = level.platform
     others = [other for other in level.order[: level.reach] if other.name != task.name]
     for number, other in enumerate(others):
-        own = source(other.period, jitter_of(other, platform), demand_of(other, platform))
+        own = source(other.period, jitter_of(other, platform), interference_of(other, platform))
         window.add(number, own)
     number = len(others)
     if platform.tick_wcet:

@@ -17,7 +17,7 @@ from ravenchart.analysis.core.can_response import FrameResponse
 from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.responses import Level, Response, RowResponse
 from ravenchart.analysis.core.sensitivity import NetworkScaling, network_scaling
-from ravenchart.analysis.core.tasks import with_full_jobs, without_phases
+from ravenchart.analysis.core.tasks import is_phased, with_full_jobs, without_phases
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.system import Chain, Stop, System
 from ravenchart.gen.model.system import Task as ModelTask
@@ -75,13 +75,23 @@ class Analysis:
 
     @cached_property
     def for_all_offsets(self) -> Analysis:
-        """The same where offsets and phases are unknown: itself where none counts."""
-        phased = any(row.phase for task in self.network.tasks for row in task.rows)
+        """The same where offsets are unknown: itself where neither these nor phases count.
+
+        Phases keep rows apart in a job of their own task; others count each row by itself. A task
+        that is not done before its next release has no phases.
+        """
+        phased = {task.name for task in self.network.tasks if is_phased(task)}
         if not phased and not any(response.alignment for response in self.responses):
             return self
-        tasks = tuple(without_phases(task.at_any_time()) for task in self.network.tasks)
-        network = replace(self.network, tasks=tasks)
-        return replace(self, network=network, found=holistic.analyse(network))
+        tasks = [replace(task.at_any_time(), summed=True) for task in self.network.tasks]
+        network = replace(self.network, tasks=tuple(tasks))
+        found = holistic.analyse(network)
+        late = {name for name in phased if not _is_alone(found.responses[name])}
+        if late:
+            tasks = [without_phases(task) if task.name in late else task for task in tasks]
+            network = replace(network, tasks=tuple(tasks))
+            found = holistic.analyse(network)
+        return replace(self, network=network, found=found)
 
     @cached_property
     def responses(self) -> tuple[Response, ...]:
@@ -235,3 +245,10 @@ def analyse(system: System) -> Analysis:
     network = network_of(system)
     summed = replace(network, tasks=tuple(with_full_jobs(task) for task in network.tasks))
     return Analysis(system, network, holistic.analyse(network), holistic.analyse(summed))
+
+
+def _is_alone(found: Response | FrameResponse) -> bool:
+    """Whether a job is done before the next release, so that one job is the busy period."""
+    if not isinstance(found, Response) or found.bound is None:
+        return False
+    return found.jobs == 1 and found.window + found.jitter <= found.task.period

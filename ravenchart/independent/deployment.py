@@ -10,6 +10,7 @@ identifiers.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -75,6 +76,16 @@ class Task:
         for row in self.rows:
             found[row.divisor] = found.get(row.divisor, 0) + row.wcet
         return found
+
+    @property
+    def longest(self) -> int:
+        """The WCET of the rows of a release that has the most to do, by their phases."""
+        if not self.rows:
+            return self.wcet
+        cycle = math.lcm(*(row.divisor for row in self.rows))
+        return max(
+            sum(row.wcet for row in self.rows if k % row.divisor == row.phase) for k in range(cycle)
+        )
 
 
 class Deployment:

@@ -249,8 +249,13 @@ class Timing:
             if t.priority >= task.priority
             for n in self.wcets(t)
         ]
+        if any(row.phase for row in task.rows):
+            wanted = (4 if task.sporadic else 2) * self.switch(task.node) + task.longest
+            self.same("sums", f"{own}_Longest", wanted, f"the longest job of {task.element}")
         mine = [f"{own}_{'C' if n == 1 else f'C_{n}'}" for n in self.wcets(task)]
         for job, window in enumerate(windows, 1):
+            if job == 1 and any(row.phase for row in task.rows):
+                mine = [f"{own}_Longest"]
             tail = "" if len(windows) == 1 else f"_{job}"
             self.same("responses", f"{own}_W{tail}", window, f"the window of job {job}")
             self.same("responses", f"{own}_Needs{tail}", window, f"the demand of job {job}")
@@ -283,6 +288,9 @@ class Timing:
     def demand(self, task: Task, jobs: int, window: int) -> int:
         """The work of so many jobs and of all that delays them within a window."""
         total = _work(self.wcets(task), jobs) + self.deployment.blocking(task)
+        if jobs == 1:
+            switches = self.wcets(task)[1] - task.works[1]
+            total = switches + task.longest + self.deployment.blocking(task)
         release = self.deployment.nodes.map(task.node).time("release", 0)
         for other in self.deployment.tasks:
             if other.place != task.place:

@@ -5,13 +5,15 @@
 
 from __future__ import annotations
 
+import math
+
 from ravenchart.gen.emit.ada.expressions import Expr, number, plain
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.model.system import System, Task
 
 from .interference import costs, of_tasks
-from .terms import name_of, plus, times
+from .terms import longest, name_of, plus, times
 
 
 def switches(task: Task) -> Expr:
@@ -30,8 +32,38 @@ def sums(task: Task) -> dict[str, Expr]:
 
 
 def work_of_jobs(task: Task, jobs: int) -> Expr:
-    """The work of so many jobs in a row, from one that executes all rows on."""
+    """The work of so many jobs in a row, from one that executes all rows on.
+
+    Phases may keep rows out of one job; of that the longest counts.
+    """
+    if jobs == 1 and is_phased(task):
+        return ref(f"{name_of(task.element)}_Longest")
     return plus(*(times(number(-(-jobs // n)), ref(c)) for n, c in costs(task).items()))
+
+
+def is_phased(task: Task) -> bool:
+    """Whether phases keep rows of a table apart."""
+    return any(slot.phase for slot in task.slots)
+
+
+def longest_of(task: Task, place: int) -> Expr:
+    """The longest work of a release until the row at a place, from 1, is done; the last: of all.
+
+    That row is executed, where it is not the last, and of the rows before it those that a release
+    executes as well.
+    """
+    slots, last = task.slots[:place], len(task.slots)
+    if not is_phased(task):
+        return plus(switches(task), *(ref(f"{name_of(slot.element)}_Wcet") for slot in slots))
+    releases = range(math.lcm(*(slot.divisor for slot in task.slots)))
+    found = dict.fromkeys(
+        tuple(slot.element for slot in slots if k % slot.divisor == slot.phase)
+        for k in releases
+        if place == last or k % slots[-1].divisor == slots[-1].phase
+    )
+    whole = [one for one in found if not any(set(one) < set(other) for other in found)]
+    sums = [plus(*(ref(f"{name_of(row)}_Wcet") for row in one)) for one in whole]
+    return plus(switches(task), longest(sums))
 
 
 def demand(system: System, task: Task, window: Expr, own: Expr) -> Expr:

@@ -46,7 +46,7 @@ from ravenchart.gen.model.system import SharedObject, System, Task
 from .buses import bus_claims, bus_terms
 from .certified import CERTIFICATE
 from .chains import chain_claims
-from .demand import demand, sums, switches, work_of_jobs
+from .demand import demand, is_phased, longest_of, sums, work_of_jobs
 from .hops import hops_of
 from .interference import UNIT, task_functions
 from .offsets import offset_claims
@@ -235,6 +235,8 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items += table_terms(task)
     items.append(named_number(f"{own}_J", _jitter(system, task)))
     items += [named_number(name, value) for name, value in sums(task).items()]
+    if is_phased(task):
+        items.append(named_number(f"{own}_Longest", longest_of(task, len(task.slots))))
     items.append(named_number(f"{own}_B", blocking))
     return items
 
@@ -254,6 +256,8 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
         text += " Let: what it sends is visible so long after its release."
     text += f" B: {held[1]} in {held[0].element}." if held else " B: no blocking."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
+    if is_phased(task):
+        text += " Longest: the rows that a release executes at most, by their phases."
     if rare:
         every = ", ".join(f"C_{n}: rows of one release in {n}" for n in rare)
         text += f" C: rows of every release; {every}."
@@ -326,8 +330,7 @@ def _row(system: System, task: Task, place: int, claims: Claims) -> list[Decl]:
             Comment(f"[{row}] the last row, done when {task.element} completes"),
             named_number(f"{done}_Done", ref(f"{own}_R")),
         ]
-    executed = [ref(f"{name_of(slot.element)}_Wcet") for slot in task.slots[:place]]
-    needed = plus(switches(task), *executed)
+    needed = longest_of(task, place)
     window = ref(f"{done}_W")
     return [
         Comment(f"[{row}] Done: the time from the event of its processor until it is done"),

@@ -105,13 +105,18 @@ def exact(claimed: Expr, terms: Sequence[Expr], element: str, what: str, least: 
     Of a window the demand within it is the only term: one that is shorter does not hold the
     demand, and a longer one shows that a term is missing. It may have to be ``least`` at least.
     """
-    longest = terms[-1]
-    for term in reversed(terms[:-1]):
-        longest = call(Attribute("Time", "Max"), term, longest)
-    other: Expr = OperatorChain("/=", (claimed, longest))
+    other: Expr = OperatorChain("/=", (claimed, longest(terms)))
     if least:
         other = OperatorChain("or else", (OperatorChain("<", (claimed, number(least))), other))
     return _refused(other, element, f"claims a wrong {what}")
+
+
+def longest(terms: Sequence[Expr]) -> Expr:
+    """The longest of some times."""
+    found = terms[-1]
+    for term in reversed(terms[:-1]):
+        found = call(Attribute("Time", "Max"), term, found)
+    return found
 
 
 def assured(*pairs: tuple[Expr, Expr]) -> Decl:
