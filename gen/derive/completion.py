@@ -8,6 +8,7 @@ All times are in ns, and every figure is on the safe side.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -24,6 +25,7 @@ from ravenchart.gen.model.system import (
 )
 
 from .distribution import as_one, part_of, without_idle_buses
+from .executive import spread
 from .senders import sender_of, sending_rows
 from .sharing import objects_on_node
 from .ways import routed
@@ -31,9 +33,13 @@ from .ways import routed
 # --- Tables ------------------------------------------------------------------------
 
 
-def table_period(slots: Iterable[Slot]) -> Ns | None:
-    """The shortest period in a table; None for an empty one."""
-    return min((slot.timing.period for slot in slots), default=None)
+def table_period(slots: Iterable[Slot], *, cyclic: bool = False) -> Ns | None:
+    """The shortest period in a table, of a cyclic executive the minor cycle; None for an empty one.
+
+    The minor cycle is the longest time that divides all periods.
+    """
+    periods = [slot.timing.period for slot in slots]
+    return min(periods, default=None) if not cyclic or not periods else Ns(math.gcd(*periods))
 
 
 def table_deadline(slots: Iterable[Slot], period: Ns) -> Ns:
@@ -49,7 +55,8 @@ def _with_divisors(processor: Processor) -> Processor:
         for slot in processor.slots
     )
     deadline = min(processor.deadline, processor.period)
-    return replace(processor, slots=slots, deadline=deadline)
+    found = replace(processor, slots=slots, deadline=deadline)
+    return spread(found) if processor.cyclic else found
 
 
 # --- Priorities --------------------------------------------------------------------

@@ -243,6 +243,8 @@ def _title(processor: Processor, *, several: bool) -> str:
     release = f"every {shown(processor.period)}"
     if processor.released_by is not None:
         release = f"on {processor.released_by}, at most {release}"
+    if processor.cyclic:
+        release += ", cyclic executive"
     if processor.logical is not None:
         release += f", logical execution time {shown(processor.logical)}"
     place = f"priority {processor.priority}{f', core {processor.core}' if several else ''}"

@@ -3,7 +3,7 @@
 
 """Nodes, what runs on them, and how it is connected, in the file format."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field as PydanticField
 from pydantic import Tag
@@ -218,6 +218,11 @@ class ProcessorForm(Element):
         "`bus.receive`, `bus.watch`.",
         min_length=1,
         max_length=1024,
+    )
+    schedule: Literal["table"] | None = optional(
+        "`table`: a cyclic executive. Its period is the minor cycle, which divides the periods of "
+        "all rows, and phases that are not given are chosen so that no release has much more work "
+        "than another one."
     )
     phases: dict[PathReference, Span] | None = optional(
         "Of rows with a longer period than the processor's: the time of the first execution, after "

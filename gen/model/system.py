@@ -63,6 +63,8 @@ class Slot:
     phase: int
     after: Ns = NO_TIME
     """The time of its first execution, after the first release of the processor."""
+    is_placed: bool = False
+    """Whether the model gives that time."""
 
     @property
     def element(self) -> str:
@@ -106,6 +108,8 @@ class Processor:
     """Where ``released_by`` is given."""
     logical: Ns | None = None
     """The logical execution time: how long after its release what it sends becomes visible."""
+    cyclic: bool = False
+    """Whether it is a cyclic executive: phases that the model leaves open are chosen."""
 
     @property
     def released_by_port(self) -> End | None:
@@ -129,8 +133,14 @@ class Processor:
 
     @property
     def wcet(self) -> Ns:
-        """Sum of the WCETs of the table: no release needs more."""
-        return Ns(sum(slot.timing.wcet for slot in self.slots))
+        """The WCETs of the rows of a release that has the most to do: of all, without phases."""
+        if not any(slot.phase for slot in self.slots):
+            return Ns(sum(slot.timing.wcet for slot in self.slots))
+        return Ns(max(sum(row.timing.wcet for row in self.rows_of(k)) for k in range(self.cycle)))
+
+    def rows_of(self, release: int) -> tuple[Slot, ...]:
+        """The rows that a release executes, by its number from 0."""
+        return tuple(slot for slot in self.slots if release % slot.divisor == slot.phase)
 
 
 @dataclass(frozen=True, slots=True)

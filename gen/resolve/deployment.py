@@ -180,10 +180,11 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         if form.offset and form.has("offset"):
             message = "`offset` has no meaning for a sporadic processor"
             findings.error("RV-0210", form.at_key("offset"), message, hint="remove it")
-        if form.logical_execution_time is not None:
-            message = f"{name} is sporadic: it has no `logical_execution_time`"
-            hint = "only releases by time are known beforehand: remove it"
-            findings.error("RV-0210", form.at_key("logical_execution_time"), message, hint=hint)
+        for key in ("logical_execution_time", "schedule"):
+            if form.has(key):
+                message = f"{name} is sporadic: it has no `{key}`"
+                hint = "only releases by time are known beforehand: remove it"
+                findings.error("RV-0210", form.at_key(key), message, hint=hint)
     slots = [
         _slot(text, form.item_at("activities", index), form, site)
         for index, text in enumerate(form.activities)
@@ -204,7 +205,8 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
     sound = _phased(name, form, sound, findings)
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
-    period = table_period(own) if form.period is None else Ns(form.period)
+    cyclic = form.schedule is not None and form.released_by is None
+    period = table_period(own, cyclic=cyclic) if form.period is None else Ns(form.period)
     if (node is None) != (form.node is None) or period is None or not (node or sound):
         return None
     if form.lost("node") or form.lost("period") or form.lost("released_by"):
@@ -234,6 +236,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         core=form.core,
         on_silence=silences,
         released_at=None if releaser is None else form.at("released_by"),
+        cyclic=cyclic,
         logical=None if form.logical_execution_time is None else Ns(form.logical_execution_time),
     )
 
@@ -255,7 +258,10 @@ def _phased(
                 findings.error("RV-0305", at, message, hint=hint)
             continue
         given[slot.element] = Ns(phase)
-    return tuple(replace(slot, after=given.get(slot.element, slot.after)) for slot in slots)
+    return tuple(
+        replace(slot, after=given[slot.element], is_placed=True) if slot.element in given else slot
+        for slot in slots
+    )
 
 
 def _logical(name: str, form: ProcessorForm, period: Ns, findings: Findings) -> Ns:

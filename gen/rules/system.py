@@ -32,6 +32,7 @@ from .components import COMPONENT_RULES
 from .nodes import NODE_RULES
 from .recording import RECORDING_RULES
 from .releases import RELEASE_RULES
+from .tables import offsets_are_shorter_than_periods, periods_are_multiples
 
 Rule = Callable[[Resolved], Iterator[Diagnostic]]
 
@@ -338,64 +339,6 @@ def rows_are_on_their_node(resolved: Resolved) -> Iterator[Diagnostic]:
                 f"{slot.element} is on {instance.node}, but {processor.name} is on {processor.node}"
             )
             yield error("RV-0707", slot.origin, message)
-
-
-def periods_are_multiples(resolved: Resolved) -> Iterator[Diagnostic]:
-    """A processor's period is the shortest in its table and divides the others."""
-    for processor in resolved.system.processors:
-        if processor.released_by is not None:
-            continue
-        slots = [slot for slot in processor.slots if slot.work is not Work.BUS_RECEIVE]
-        if not slots:
-            continue
-        shortest = min(slots, key=lambda slot: slot.timing.period)
-        base = shortest.timing.period
-        if processor.period != base and "processors" in resolved.sound_sections:
-            message = (
-                f"the period of {processor.name} is given as {shown(processor.period)}, but the "
-                f"shortest in its table is {shown(base)}"
-            )
-            notes = [(shortest.origin, f"{shortest.element} has it")]
-            hint = f"write `period: {shown(base)}`, or leave `period` out"
-            yield error("RV-0704", processor.origin, message, notes=notes, hint=hint)
-        for slot in slots:
-            if slot.timing.period % base:
-                below = slot.timing.period // base * base
-                message = (
-                    f"the period of {slot.element}, {shown(slot.timing.period)}, is no multiple of "
-                    f"{shown(base)}, the period of {processor.name}"
-                )
-                notes = [(shortest.origin, f"{shortest.element} sets that period")]
-                hint = (
-                    f"{shown(below)} or {shown(below + base)} would fit; or move it to another "
-                    "processor"
-                )
-                yield error("RV-0704", slot.origin, message, notes=notes, hint=hint)
-
-
-def offsets_are_shorter_than_periods(resolved: Resolved) -> Iterator[Diagnostic]:
-    """The first release comes within the first period, and so does the first execution of a row."""
-    for processor in resolved.system.processors:
-        if processor.offset >= processor.period:
-            message = (
-                f"the offset of {processor.name}, {shown(processor.offset)}, is not shorter than "
-                f"its period, {shown(processor.period)}"
-            )
-            yield error("RV-0708", processor.origin, message)
-        for slot in processor.slots:
-            yield from _unfit_phase(processor, slot)
-
-
-def _unfit_phase(processor: Processor, slot: Slot) -> Iterator[Diagnostic]:
-    """The first execution of a row is in a release of its first period."""
-    base, period, phase = processor.period, slot.timing.period, slot.after
-    if period % base == 0 and phase and (phase % base or phase >= period):
-        message = (
-            f"the phase of {slot.element}, {shown(phase)}, is no multiple of {shown(base)}, the "
-            f"period of {processor.name}, below {shown(period)}, its own"
-        )
-        below = min(phase // base * base, period - base)
-        yield error("RV-0708", slot.origin, message, hint=f"{shown(below)} would fit")
 
 
 def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:

@@ -75,7 +75,9 @@ class WantedTable:
     logical: int | None = None
     """The logical execution time of one that stays as it is."""
     phases: Mapping[str, int] = field(default_factory=dict)
-    """Those of its rows."""
+    """Those of its rows that the model gives."""
+    cyclic: bool = False
+    """It is a cyclic executive."""
 
 
 class Judge:
@@ -107,7 +109,7 @@ class Judge:
 
 def _stays(processor: Processor) -> bool:
     """Whether a processor stays as it is: other tables would change when values are visible."""
-    phased = any(slot.after for slot in processor.slots)
+    phased = processor.cyclic or any(slot.after for slot in processor.slots)
     return processor.released_by is not None or processor.logical is not None or phased
 
 
@@ -245,6 +247,8 @@ def yaml(proposal: Proposal) -> str:
             lines.append(f"    offset: {duration(one.offset)}")
         if one.logical is not None:
             lines.append(f"    logical_execution_time: {duration(one.logical)}")
+        if one.cyclic:
+            lines.append("    schedule: table")
         if one.phases:
             lines.append("    phases:")
             lines += [f"      {row}: {duration(time)}" for row, time in one.phases.items()]
@@ -327,7 +331,8 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             tuple(slot.element for slot in one.slots),
             dict(_reactions(one)),
             one.logical,
-            {slot.element: slot.after for slot in one.slots if slot.after},
+            {slot.element: slot.after for slot in one.slots if slot.is_placed},
+            one.cyclic,
         )
         for one in _written(proposal.system)
     )

@@ -58,6 +58,8 @@ class Task:
     core: int = 1
     lasting: int = 0
     """How long after its releases what it sends is visible; 0: when it is sent."""
+    cyclic: bool = False
+    """The generator chose the phases of its rows; the certificate says which."""
 
     @property
     def place(self) -> tuple[str, int]:
@@ -353,7 +355,9 @@ class Deployment:
             rows.append(row)
         if not rows:
             return Task(name, node, 1, 1, 0)
-        period = form.time("period") if form.text("period") else min(periods)
+        cyclic = form.text("schedule") == "table"
+        shared = math.gcd(*periods) if cyclic else min(periods)
+        period = form.time("period") if form.text("period") else shared
         shortest = min(ends, default=period)
         lasting = form.time("logical_execution_time", 0)
         deadline = min(form.time("deadline", shortest), shortest, period, lasting or period)
@@ -375,6 +379,7 @@ class Deployment:
             port=self._releasing(by) if "." in by else None,
             core=form.number("core", 1),
             lasting=lasting,
+            cyclic=cyclic,
         )
 
     def _releasing(self, end: str) -> str:

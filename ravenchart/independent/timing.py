@@ -161,7 +161,13 @@ class Timing:
             if not task.sporadic:
                 timed = own if all(one.divisor == 1 for one in task.rows) else name
                 self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
-                self.same("rows", f"{timed}_Phase", row.phase, f"the phase {what}")
+                if task.cyclic:
+                    row.phase = self.value(f"{name}_Phase")
+                    late, least = row.phase < row.divisor, min(row.phase, row.divisor - 1)
+                    self.same("rows", f"{timed}_Phase", least, f"the phase {what}")
+                    self.report.agree("rows", self.certificate.path, 1, late, f"{name} never runs")
+                else:
+                    self.same("rows", f"{timed}_Phase", row.phase, f"the phase {what}")
         for divisor, wcet in self.wcets(task).items():
             letter = "C" if divisor == 1 else f"C_{divisor}"
             self.same("sums", f"{own}_{letter}", wcet, f"the sum of WCETs {why}")
