@@ -356,8 +356,8 @@ class Deployment:
         if not rows:
             return Task(name, node, 1, 1, 0)
         cyclic = form.text("schedule") == "table"
-        shared = math.gcd(*periods) if cyclic else min(periods)
-        period = form.time("period") if form.text("period") else shared
+        shared = math.gcd if cyclic else min
+        period = form.time("period") if form.text("period") else shared(*periods, periods[0])
         shortest = min(ends, default=period)
         lasting = form.time("logical_execution_time", 0)
         deadline = min(form.time("deadline", shortest), shortest, period, lasting or period)

@@ -36,12 +36,12 @@ def work_of_jobs(task: Task, jobs: int) -> Expr:
 
     Phases may keep rows out of one job; of that the longest counts.
     """
-    if jobs == 1 and is_phased(task):
+    if jobs == 1 and has_phases(task):
         return ref(f"{name_of(task.element)}_Longest")
     return plus(*(times(number(-(-jobs // n)), ref(c)) for n, c in costs(task).items()))
 
 
-def is_phased(task: Task) -> bool:
+def has_phases(task: Task) -> bool:
     """Whether phases keep rows of a table apart."""
     return any(slot.phase for slot in task.slots)
 
@@ -53,7 +53,7 @@ def longest_of(task: Task, place: int) -> Expr:
     executes as well.
     """
     slots, last = task.slots[:place], len(task.slots)
-    if not is_phased(task):
+    if not has_phases(task):
         return plus(switches(task), *(ref(f"{name_of(slot.element)}_Wcet") for slot in slots))
     releases = range(math.lcm(*(slot.divisor for slot in task.slots)))
     found = dict.fromkeys(

@@ -46,7 +46,7 @@ from ravenchart.gen.model.system import SharedObject, System, Task
 from .buses import bus_claims, bus_terms
 from .certified import CERTIFICATE
 from .chains import chain_claims
-from .demand import demand, is_phased, longest_of, sums, work_of_jobs
+from .demand import demand, has_phases, longest_of, sums, work_of_jobs
 from .hops import hops_of
 from .interference import UNIT, task_functions
 from .offsets import offset_claims
@@ -235,7 +235,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items += table_terms(task)
     items.append(named_number(f"{own}_J", _jitter(system, task)))
     items += [named_number(name, value) for name, value in sums(task).items()]
-    if is_phased(task):
+    if has_phases(task):
         items.append(named_number(f"{own}_Longest", longest_of(task, len(task.slots))))
     items.append(named_number(f"{own}_B", blocking))
     return items
@@ -256,7 +256,7 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
         text += " Let: what it sends is visible so long after its release."
     text += f" B: {held[1]} in {held[0].element}." if held else " B: no blocking."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
-    if is_phased(task):
+    if has_phases(task):
         text += " Longest: the rows that a release executes at most, by their phases."
     if rare:
         every = ", ".join(f"C_{n}: rows of one release in {n}" for n in rare)
