@@ -37,6 +37,7 @@ OUTSIDE = ROOT / "proofs" / "outside_spark.toml"
 """What may be outside SPARK in each target of ``make prove``, with the entry of the ledger."""
 
 EXAMPLES = (
+    "autopilot",
     "canopen_device",
     "cartesian_robot",
     "crossing",

@@ -196,7 +196,6 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
         response, cycle = _until_visible(step, after, found), _cycle(step.name, network)
         wait: int | None = 0
         backlog: int | None = 0
-        kept_up = not queued and before is not None and renewal == _cycle(before.name, network)
         if step.hop is HopKind.RELEASED and before is not None:
             response = _less(response, found.from_event(before.name))
             wait = network.items()[step.name].period - network.items()[before.name].period
@@ -204,8 +203,7 @@ def latency(chain: TimedChain, network: Network, found: Holistic) -> Latency:
             wait = None if wait and (queued or cycle is None) else wait
         elif step.hop is HopKind.SAMPLED:
             wait, queued = cycle, False
-            if wait is not None and kept_up:
-                wait -= step.saved
+            wait = None if wait is None else wait - step.saved
         elif step.hop is HopKind.QUEUED and before is not None:
             wait, backlog = _queue(before.name, step, network, found)
             queued = True

@@ -57,11 +57,9 @@ def chain_claims(system: System, chain: Chain, claim: ChainClaim) -> list[Decl]:
             sender = None if before is None else _sender(hops[:place])
             saved: list[Expr] = []
             if hop.link is not None and before is not None:
-                lasting = ref(f"{name_of(hop.link.sender.name)}_Let")
-                reaction[-1] = age[-1] = lasting
-                if not queued and sender is not None and _is_own(hops[:place], sender):
-                    items += _grid(system, f"{own}_{place + 1}", (before, hop), chain.name)
-                    saved = [ref(f"{own}_{place + 1}_Grid"), ref(f"{own}_{place + 1}_Lag")]
+                reaction[-1] = age[-1] = ref(f"{name_of(hop.link.sender.name)}_Let")
+                items += _grid(system, f"{own}_{place + 1}", (before, hop), chain.name)
+                saved = [ref(f"{own}_{place + 1}_Grid"), ref(f"{own}_{place + 1}_Lag")]
             reaction.append(_less(_period(system, hop), saved))
             if sender is not None and not queued:
                 age.append(_less(_longest(system, sender), saved))
@@ -116,12 +114,6 @@ def _less(period: Expr, saved: list[Expr]) -> Expr:
         return period
     grid, lag = saved
     return OperatorChain("+", (OperatorChain("-", (period, grid)), lag))
-
-
-def _is_own(hops: tuple[ClaimedHop, ...], sender: ClaimedHop) -> bool:
-    """Whether the last step makes an output in each of its own jobs, as often as its sender."""
-    last = hops[-1]
-    return last.sure and not last.renewed and last.kind == sender.kind == "row"
 
 
 def _grid(system: System, own: str, hops: tuple[ClaimedHop, ClaimedHop], chain: str) -> list[Decl]:
