@@ -11,5 +11,5 @@ is
       Air      : out Autopilot.Air;
       Send_Air : out Boolean)
    with Global => null;
-   --  [Air_Probe.scale] WCET 40_000 ns, every 20_000_000 ns
+   --  [Air_Probe.scale] WCET 80_000 ns, every 20_000_000 ns
 end Autopilot.Air_Probe.Flows;

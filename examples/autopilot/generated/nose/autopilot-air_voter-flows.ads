@@ -12,5 +12,5 @@ is
       Air      : out Autopilot.Air;
       Send_Air : out Boolean)
    with Global => null;
-   --  [Air_Voter.vote] WCET 80_000 ns, every 20_000_000 ns
+   --  [Air_Voter.vote] WCET 160_000 ns, every 20_000_000 ns
 end Autopilot.Air_Voter.Flows;

@@ -15,5 +15,5 @@ is
       Height      : out Autopilot.Height;
       Send_Height : out Boolean)
    with Global => null;
-   --  [Air_Filter.filter] WCET 60_000 ns, every 20_000_000 ns
+   --  [Air_Filter.filter] WCET 120_000 ns, every 20_000_000 ns
 end Autopilot.Air_Filter.Flows;

@@ -12,5 +12,5 @@ is
       Turn      : out Autopilot.Rate;
       Send_Turn : out Boolean)
    with Global => null;
-   --  [Angle_Loop.control] WCET 40_000 ns, every 20_000_000 ns
+   --  [Angle_Loop.control] WCET 80_000 ns, every 20_000_000 ns
 end Autopilot.Angle_Loop.Flows;

@@ -10,28 +10,28 @@ is
    procedure Predict
      (Turn          : Attitude_Estimator.Turn_View;
       Drift         : Autopilot.Rate;
-      Roll          : in out Autopilot.Angle;
-      Pitch         : in out Autopilot.Angle;
-      Heading       : in out Autopilot.Angle;
+      Roll          : in out Autopilot.Fine_Angle;
+      Pitch         : in out Autopilot.Fine_Angle;
+      Heading       : in out Autopilot.Fine_Angle;
       Attitude      : out Autopilot.Attitude;
       Send_Attitude : out Boolean) is
    begin
       Roll :=
         Ravenchart.Number'Min
-          (Ravenchart.Number'Max (Roll + Turn.Value.Roll / 100,
-              Ravenchart.Number'Val (-18_000)), 18_000);
+          (Ravenchart.Number'Max (Roll + Turn.Value.Roll,
+              Ravenchart.Number'Val (-1_800_000)), 1_800_000);
       Pitch :=
         Ravenchart.Number'Min
-          (Ravenchart.Number'Max (Pitch + Turn.Value.Pitch / 100,
-              Ravenchart.Number'Val (-9_000)), 9_000);
+          (Ravenchart.Number'Max (Pitch + Turn.Value.Pitch,
+              Ravenchart.Number'Val (-900_000)), 900_000);
       Heading :=
         Ravenchart.Number'Min
-          (Ravenchart.Number'Max (Heading + (Turn.Value.Yaw - Drift) / 100,
-              Ravenchart.Number'Val (-18_000)), 18_000);
+          (Ravenchart.Number'Max (Heading + Turn.Value.Yaw - Drift,
+              Ravenchart.Number'Val (-1_800_000)), 1_800_000);
       Attitude :=
-        Autopilot.Attitude'(Roll => Roll,
-         Pitch => Pitch,
-         Heading => Heading);
+        Autopilot.Attitude'(Roll => Roll / 100,
+         Pitch => Pitch / 100,
+         Heading => Heading / 100);
       Send_Attitude := True;
    end Predict;
 

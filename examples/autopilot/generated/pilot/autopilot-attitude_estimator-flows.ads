@@ -8,16 +8,16 @@ is
    procedure Predict
      (Turn          : Attitude_Estimator.Turn_View;
       Drift         : Autopilot.Rate;
-      Roll          : in out Autopilot.Angle;
-      Pitch         : in out Autopilot.Angle;
-      Heading       : in out Autopilot.Angle;
+      Roll          : in out Autopilot.Fine_Angle;
+      Pitch         : in out Autopilot.Fine_Angle;
+      Heading       : in out Autopilot.Fine_Angle;
       Attitude      : out Autopilot.Attitude;
       Send_Attitude : out Boolean)
    with Global => null;
-   --  [Attitude_Estimator.predict] WCET 80_000 ns, every 10_000_000 ns
+   --  [Attitude_Estimator.predict] WCET 160_000 ns, every 10_000_000 ns
 
    procedure Learn_Drift
      (Turn : Attitude_Estimator.Turn_View; Drift : in out Autopilot.Rate)
    with Global => null;
-   --  [Attitude_Estimator.learn_drift] WCET 30_000 ns, every 100_000_000 ns
+   --  [Attitude_Estimator.learn_drift] WCET 60_000 ns, every 100_000_000 ns
 end Autopilot.Attitude_Estimator.Flows;

@@ -40,13 +40,13 @@ is
       Ceiling => System.Default_Priority + 5);
 
    --  [estimator.roll] written by predict
-   Roll_Own : Autopilot.Angle := 0;
+   Roll_Own : Autopilot.Fine_Angle := 0;
 
    --  [estimator.pitch] written by predict
-   Pitch_Own : Autopilot.Angle := 0;
+   Pitch_Own : Autopilot.Fine_Angle := 0;
 
    --  [estimator.heading] written by predict
-   Heading_Own : Autopilot.Angle := 0;
+   Heading_Own : Autopilot.Fine_Angle := 0;
 
    --  [estimator.drift] written by learn_drift
    Drift_Own : Autopilot.Rate := 0;

@@ -7,7 +7,7 @@ with SPARK_Mode
 is
    procedure Beat (Beats : in out Autopilot.Beat)
    with Global => null;
-   --  [Ground_Link.beat] WCET 30_000 ns, every 100_000_000 ns
+   --  [Ground_Link.beat] WCET 60_000 ns, every 100_000_000 ns
 
    procedure Report
      (Mode           : Ground_Link.Mode_View;
@@ -17,5 +17,5 @@ is
       Telemetry      : out Autopilot.Telemetry;
       Send_Telemetry : out Boolean)
    with Global => null;
-   --  [Ground_Link.report] WCET 60_000 ns, every 100_000_000 ns
+   --  [Ground_Link.report] WCET 120_000 ns, every 100_000_000 ns
 end Autopilot.Ground_Link.Flows;

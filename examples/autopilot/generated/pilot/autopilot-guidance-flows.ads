@@ -14,7 +14,7 @@ is
       Turn_Wish  : out Autopilot.Angle;
       Climb_Wish : out Autopilot.Angle)
    with Global => null;
-   --  [Guidance.plan] WCET 60_000 ns, every 20_000_000 ns
+   --  [Guidance.plan] WCET 120_000 ns, every 20_000_000 ns
 
    procedure Steer
      (Turn_Wish  : Autopilot.Angle;
@@ -29,5 +29,5 @@ is
       Mode       : out Autopilot.Mode;
       Send_Mode  : out Boolean)
    with Global => null;
-   --  [Guidance.steer] WCET 60_000 ns, every 20_000_000 ns
+   --  [Guidance.steer] WCET 120_000 ns, every 20_000_000 ns
 end Autopilot.Guidance.Flows;

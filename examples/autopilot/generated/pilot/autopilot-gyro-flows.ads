@@ -11,5 +11,5 @@ is
       Rates      : out Autopilot.Turn;
       Send_Rates : out Boolean)
    with Global => null;
-   --  [Gyro.scale] WCET 40_000 ns, every 5_000_000 ns
+   --  [Gyro.scale] WCET 80_000 ns, every 5_000_000 ns
 end Autopilot.Gyro.Flows;

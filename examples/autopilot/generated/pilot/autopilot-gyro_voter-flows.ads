@@ -13,7 +13,7 @@ is
       Left      : out Autopilot.Count;
       Send_Left : out Boolean)
    with Global => null;
-   --  [Gyro_Voter.count] WCET 30_000 ns, every 5_000_000 ns
+   --  [Gyro_Voter.count] WCET 60_000 ns, every 5_000_000 ns
 
    procedure Vote
      (Alive     : Autopilot.Count;
@@ -23,5 +23,5 @@ is
       Turn      : out Autopilot.Turn;
       Send_Turn : out Boolean)
    with Global => null;
-   --  [Gyro_Voter.vote] WCET 80_000 ns, every 5_000_000 ns
+   --  [Gyro_Voter.vote] WCET 160_000 ns, every 5_000_000 ns
 end Autopilot.Gyro_Voter.Flows;

@@ -10,7 +10,7 @@ is
       Thrust     : Mixer.Thrust_View;
       Thrust_Now : in out Autopilot.Thrust)
    with Global => null;
-   --  [Mixer.ramp] WCET 30_000 ns, every 10_000_000 ns
+   --  [Mixer.ramp] WCET 60_000 ns, every 10_000_000 ns
 
    procedure Mix
      (Deflection_1  : Mixer.Deflection_1_View;
@@ -20,5 +20,5 @@ is
       Surfaces      : out Autopilot.Surfaces;
       Send_Surfaces : out Boolean)
    with Global => null;
-   --  [Mixer.mix] WCET 60_000 ns, every 10_000_000 ns
+   --  [Mixer.mix] WCET 120_000 ns, every 10_000_000 ns
 end Autopilot.Mixer.Flows;

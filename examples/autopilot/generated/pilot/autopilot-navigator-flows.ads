@@ -11,19 +11,19 @@ is
       North    : in out Autopilot.Distance;
       East     : in out Autopilot.Distance)
    with Global => null;
-   --  [Navigator.locate] WCET 80_000 ns, every 50_000_000 ns
+   --  [Navigator.locate] WCET 160_000 ns, every 50_000_000 ns
 
    procedure Advance
      (North : Autopilot.Distance;
       East  : Autopilot.Distance;
       Leg   : in out Autopilot.Leg)
    with Global => null;
-   --  [Navigator.advance] WCET 40_000 ns, every 200_000_000 ns
+   --  [Navigator.advance] WCET 80_000 ns, every 200_000_000 ns
 
    procedure Point
      (Leg         : Autopilot.Leg;
       Course      : out Autopilot.Angle;
       Send_Course : out Boolean)
    with Global => null;
-   --  [Navigator.point] WCET 30_000 ns, every 50_000_000 ns
+   --  [Navigator.point] WCET 60_000 ns, every 50_000_000 ns
 end Autopilot.Navigator.Flows;

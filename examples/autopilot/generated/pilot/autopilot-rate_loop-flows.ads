@@ -14,5 +14,5 @@ is
       Deflection      : out Autopilot.Deflection;
       Send_Deflection : out Boolean)
    with Global => null;
-   --  [Rate_Loop.control] WCET 60_000 ns, every 10_000_000 ns
+   --  [Rate_Loop.control] WCET 120_000 ns, every 10_000_000 ns
 end Autopilot.Rate_Loop.Flows;

@@ -12,5 +12,5 @@ is
       Thrust      : out Autopilot.Thrust;
       Send_Thrust : out Boolean)
    with Global => null;
-   --  [Speed_Loop.hold] WCET 40_000 ns, every 20_000_000 ns
+   --  [Speed_Loop.hold] WCET 80_000 ns, every 20_000_000 ns
 end Autopilot.Speed_Loop.Flows;

@@ -12,7 +12,7 @@ with SPARK_Mode, Pure
 is
    --  SHA-256 of the model; the program writes it into the trace.
    Model_Digest : constant String :=
-     "e6248a70679bc0dfa74a88d8700b56c6e4c7168eac66dc4aca3fd2a8444f0f8b";
+     "1c49bb8fe197304aa3efaec6b785fa0e38f0b821eb8ed363718fe21f384c2927";
 
    use Ravenchart.Response_Times;
 
@@ -33,43 +33,43 @@ is
    --
    --  The claimed response-time bounds: the bound of each element, and the
    --  jitter of those that it releases.
-   From_Flight_Nose_R : constant := 305_000;
-   From_Flight_Pilot_R : constant := 545_000;
-   From_Flight_Tail_R : constant := 425_000;
-   From_Backup_Pilot_R : constant := 605_000;
-   From_Backup_Tail_R : constant := 485_000;
-   Airing_R : constant := 675_000;
-   Sensing_R : constant := 1_195_000;
-   Acting_R : constant := 1_635_000;
-   Telling_R : constant := 1_805_000;
-   Estimating_R : constant := 265_000;
-   Guiding_R : constant := 795_000;
-   Finding_R : constant := 1_005_000;
-   Moving_R : constant := 795_000;
-   Flight_Driver_Rx_Gyro_1_R : constant := 725_000;
-   Flight_Driver_Rx_Gyro_2_R : constant := 840_000;
-   Flight_Driver_Rx_Gyro_3_R : constant := 955_000;
-   Flight_Driver_Rx_Probe_1_R : constant := 925_000;
-   Flight_Driver_Rx_Probe_2_R : constant := 1_030_000;
-   Flight_Driver_Rx_Probe_3_R : constant := 1_135_000;
-   Backup_Driver_Rx_Order_R : constant := 1_285_000;
-   Backup_Driver_Rx_Stick_R : constant := 1_455_000;
-   Flight_Driver_Tx_Surfaces_R : constant := 2_120_000;
-   Flight_Driver_Rx_Surfaces_R : constant := 3_375_000;
-   Backup_Driver_Tx_Surfaces_Spare_R : constant := 2_120_000;
-   Backup_Driver_Rx_Surfaces_Spare_R : constant := 4_335_000;
-   Flight_Driver_Tx_Air_R : constant := 920_000;
-   Flight_Driver_Rx_Air_R : constant := 2_295_000;
-   Backup_Driver_Tx_Air_Spare_R : constant := 920_000;
-   Backup_Driver_Rx_Air_Spare_R : constant := 3_255_000;
-   Backup_Driver_Tx_Charge_R : constant := 1_160_000;
-   Backup_Driver_Rx_Charge_R : constant := 3_495_000;
-   Backup_Driver_Tx_Telemetry_R : constant := 2_290_000;
-   Backup_Driver_Tx_Path_R : constant := 1_160_000;
-   Backup_Driver_Tx_Left_R : constant := 1_160_000;
-   Backup_Driver_Tx_Right_R : constant := 1_160_000;
-   Backup_Driver_Tx_Rudder_R : constant := 1_160_000;
-   Backup_Driver_Tx_Throttle_R : constant := 1_160_000;
+   From_Flight_Nose_R : constant := 485_000;
+   From_Flight_Pilot_R : constant := 905_000;
+   From_Flight_Tail_R : constant := 695_000;
+   From_Backup_Pilot_R : constant := 995_000;
+   From_Backup_Tail_R : constant := 785_000;
+   Airing_R : constant := 1_335_000;
+   Sensing_R : constant := 2_275_000;
+   Acting_R : constant := 3_355_000;
+   Telling_R : constant := 3_675_000;
+   Estimating_R : constant := 505_000;
+   Guiding_R : constant := 1_545_000;
+   Finding_R : constant := 1_945_000;
+   Moving_R : constant := 1_605_000;
+   Flight_Driver_Rx_Gyro_1_R : constant := 1_055_000;
+   Flight_Driver_Rx_Gyro_2_R : constant := 1_170_000;
+   Flight_Driver_Rx_Gyro_3_R : constant := 1_285_000;
+   Flight_Driver_Rx_Probe_1_R : constant := 1_075_000;
+   Flight_Driver_Rx_Probe_2_R : constant := 1_180_000;
+   Flight_Driver_Rx_Probe_3_R : constant := 1_285_000;
+   Backup_Driver_Rx_Order_R : constant := 1_615_000;
+   Backup_Driver_Rx_Stick_R : constant := 1_785_000;
+   Flight_Driver_Tx_Surfaces_R : constant := 4_170_000;
+   Flight_Driver_Rx_Surfaces_R : constant := 5_665_000;
+   Backup_Driver_Tx_Surfaces_Spare_R : constant := 4_170_000;
+   Backup_Driver_Rx_Surfaces_Spare_R : constant := 6_625_000;
+   Flight_Driver_Tx_Air_R : constant := 1_730_000;
+   Flight_Driver_Rx_Air_R : constant := 3_435_000;
+   Backup_Driver_Tx_Air_Spare_R : constant := 1_730_000;
+   Backup_Driver_Rx_Air_Spare_R : constant := 4_395_000;
+   Backup_Driver_Tx_Charge_R : constant := 2_210_000;
+   Backup_Driver_Rx_Charge_R : constant := 4_875_000;
+   Backup_Driver_Tx_Telemetry_R : constant := 4_490_000;
+   Backup_Driver_Tx_Path_R : constant := 2_210_000;
+   Backup_Driver_Tx_Left_R : constant := 2_210_000;
+   Backup_Driver_Tx_Right_R : constant := 2_210_000;
+   Backup_Driver_Tx_Rudder_R : constant := 2_210_000;
+   Backup_Driver_Tx_Throttle_R : constant := 2_210_000;
    Nose_Probe_R : constant := 45_000;
    Pilot_Probe_R : constant := 45_000;
    Tail_Probe_R : constant := 45_000;
@@ -81,17 +81,17 @@ is
    Flight_Probe_3_R : constant := 890_000;
    Backup_Order_R : constant := 800_000;
    Backup_Stick_R : constant := 970_000;
-   Flight_Surfaces_R : constant := 3_010_000;
-   Backup_Surfaces_Spare_R : constant := 3_970_000;
-   Flight_Air_R : constant := 1_810_000;
-   Backup_Air_Spare_R : constant := 2_770_000;
-   Backup_Charge_R : constant := 3_010_000;
-   Backup_Telemetry_R : constant := 4_140_000;
-   Backup_Path_R : constant := 3_010_000;
-   Backup_Left_R : constant := 3_010_000;
-   Backup_Right_R : constant := 3_010_000;
-   Backup_Rudder_R : constant := 3_010_000;
-   Backup_Throttle_R : constant := 3_010_000;
+   Flight_Surfaces_R : constant := 5_060_000;
+   Backup_Surfaces_Spare_R : constant := 6_020_000;
+   Flight_Air_R : constant := 2_620_000;
+   Backup_Air_Spare_R : constant := 3_580_000;
+   Backup_Charge_R : constant := 4_060_000;
+   Backup_Telemetry_R : constant := 6_340_000;
+   Backup_Path_R : constant := 4_060_000;
+   Backup_Left_R : constant := 4_060_000;
+   Backup_Right_R : constant := 4_060_000;
+   Backup_Rudder_R : constant := 4_060_000;
+   Backup_Throttle_R : constant := 4_060_000;
 
    --  [nose] the times of the platform, each the longest
    Nose_Context_Switch : constant := 10_000;
@@ -114,7 +114,7 @@ is
    --  [from_flight_nose] released by arrivals, at least T apart; an arrival
    --  may also wait until T is over. B: airing in probe_1.raw.mailbox.
    From_Flight_Nose_Priority : constant := System.Default_Priority + 13;
-   Flight_Receive_Nose_Wcet : constant := 20_000;
+   Flight_Receive_Nose_Wcet : constant := 50_000;
    From_Flight_Nose_T : constant := 1_000_000;
    From_Flight_Nose_D : constant := 1_000_000;
    From_Flight_Nose_J : constant := 0;
@@ -126,7 +126,7 @@ is
    --  arrival may also wait until T is over. B: sensing in
    --  gyro_1.raw.mailbox.
    From_Flight_Pilot_Priority : constant := System.Default_Priority + 12;
-   Flight_Receive_Pilot_Wcet : constant := 20_000;
+   Flight_Receive_Pilot_Wcet : constant := 50_000;
    From_Flight_Pilot_T : constant := 1_000_000;
    From_Flight_Pilot_D : constant := 1_000_000;
    From_Flight_Pilot_J : constant := 0;
@@ -137,7 +137,7 @@ is
    --  [from_flight_tail] released by arrivals, at least T apart; an arrival
    --  may also wait until T is over. B: moving in selector.main.mailbox.
    From_Flight_Tail_Priority : constant := System.Default_Priority + 11;
-   Flight_Receive_Tail_Wcet : constant := 20_000;
+   Flight_Receive_Tail_Wcet : constant := 50_000;
    From_Flight_Tail_T : constant := 1_000_000;
    From_Flight_Tail_D : constant := 1_000_000;
    From_Flight_Tail_J : constant := 0;
@@ -149,7 +149,7 @@ is
    --  arrival may also wait until T is over. B: sensing in
    --  gyro_1.raw.mailbox.
    From_Backup_Pilot_Priority : constant := System.Default_Priority + 10;
-   Backup_Receive_Pilot_Wcet : constant := 20_000;
+   Backup_Receive_Pilot_Wcet : constant := 50_000;
    From_Backup_Pilot_T : constant := 1_000_000;
    From_Backup_Pilot_D : constant := 1_000_000;
    From_Backup_Pilot_J : constant := 0;
@@ -160,7 +160,7 @@ is
    --  [from_backup_tail] released by arrivals, at least T apart; an arrival
    --  may also wait until T is over. B: moving in selector.main.mailbox.
    From_Backup_Tail_Priority : constant := System.Default_Priority + 9;
-   Backup_Receive_Tail_Wcet : constant := 20_000;
+   Backup_Receive_Tail_Wcet : constant := 50_000;
    From_Backup_Tail_T : constant := 1_000_000;
    From_Backup_Tail_D : constant := 1_000_000;
    From_Backup_Tail_J : constant := 0;
@@ -170,14 +170,14 @@ is
 
    --  [airing] released every T. B: main in nose.health.
    Airing_Priority : constant := System.Default_Priority + 3;
-   Probe_1_Ports_Wcet : constant := 30_000;
-   Probe_2_Ports_Wcet : constant := 30_000;
-   Probe_3_Ports_Wcet : constant := 30_000;
-   Probe_1_Scale_Wcet : constant := 40_000;
-   Probe_2_Scale_Wcet : constant := 40_000;
-   Probe_3_Scale_Wcet : constant := 40_000;
-   Air_Vote_Ports_Wcet : constant := 60_000;
-   Air_Vote_Vote_Wcet : constant := 80_000;
+   Probe_1_Ports_Wcet : constant := 60_000;
+   Probe_2_Ports_Wcet : constant := 60_000;
+   Probe_3_Ports_Wcet : constant := 60_000;
+   Probe_1_Scale_Wcet : constant := 80_000;
+   Probe_2_Scale_Wcet : constant := 80_000;
+   Probe_3_Scale_Wcet : constant := 80_000;
+   Air_Vote_Ports_Wcet : constant := 120_000;
+   Air_Vote_Vote_Wcet : constant := 160_000;
    Airing_T : constant := 20_000_000;
    Airing_D : constant := 20_000_000;
    Airing_Divisor : constant := 1;
@@ -194,16 +194,16 @@ is
    --  [sensing] released every T. Let: what it sends is visible so long
    --  after its release. B: telling in link.charge.mailbox.
    Sensing_Priority : constant := System.Default_Priority + 8;
-   Gyro_1_Ports_Wcet : constant := 30_000;
-   Gyro_2_Ports_Wcet : constant := 30_000;
-   Gyro_3_Ports_Wcet : constant := 30_000;
-   Gyro_1_Scale_Wcet : constant := 40_000;
-   Gyro_2_Scale_Wcet : constant := 40_000;
-   Gyro_3_Scale_Wcet : constant := 40_000;
-   Gyro_Vote_Ports_Wcet : constant := 60_000;
-   Gyro_Vote_Count_Wcet : constant := 30_000;
-   Gyro_Vote_Vote_Wcet : constant := 80_000;
-   Gyro_Vote_Gyros_Wcet : constant := 30_000;
+   Gyro_1_Ports_Wcet : constant := 60_000;
+   Gyro_2_Ports_Wcet : constant := 60_000;
+   Gyro_3_Ports_Wcet : constant := 60_000;
+   Gyro_1_Scale_Wcet : constant := 80_000;
+   Gyro_2_Scale_Wcet : constant := 80_000;
+   Gyro_3_Scale_Wcet : constant := 80_000;
+   Gyro_Vote_Ports_Wcet : constant := 120_000;
+   Gyro_Vote_Count_Wcet : constant := 60_000;
+   Gyro_Vote_Vote_Wcet : constant := 160_000;
+   Gyro_Vote_Gyros_Wcet : constant := 60_000;
    Sensing_T : constant := 5_000_000;
    Sensing_D : constant := 5_000_000;
    Sensing_Let : constant := 5_000_000;
@@ -224,15 +224,15 @@ is
 
    --  [acting] released every T. B: telling in link.charge.mailbox.
    Acting_Priority : constant := System.Default_Priority + 6;
-   Rate_1_Ports_Wcet : constant := 30_000;
-   Rate_2_Ports_Wcet : constant := 30_000;
-   Rate_3_Ports_Wcet : constant := 30_000;
-   Rate_1_Control_Wcet : constant := 60_000;
-   Rate_2_Control_Wcet : constant := 60_000;
-   Rate_3_Control_Wcet : constant := 60_000;
-   Mix_Ports_Wcet : constant := 60_000;
-   Mix_Ramp_Wcet : constant := 30_000;
-   Mix_Mix_Wcet : constant := 60_000;
+   Rate_1_Ports_Wcet : constant := 60_000;
+   Rate_2_Ports_Wcet : constant := 60_000;
+   Rate_3_Ports_Wcet : constant := 60_000;
+   Rate_1_Control_Wcet : constant := 120_000;
+   Rate_2_Control_Wcet : constant := 120_000;
+   Rate_3_Control_Wcet : constant := 120_000;
+   Mix_Ports_Wcet : constant := 120_000;
+   Mix_Ramp_Wcet : constant := 60_000;
+   Mix_Mix_Wcet : constant := 120_000;
    Acting_T : constant := 10_000_000;
    Acting_D : constant := 10_000_000;
    Acting_Divisor : constant := 1;
@@ -249,9 +249,9 @@ is
 
    --  [telling] released every T. B: main in pilot.health.
    Telling_Priority : constant := System.Default_Priority + 1;
-   Link_Ports_Wcet : constant := 60_000;
-   Link_Beat_Wcet : constant := 30_000;
-   Link_Report_Wcet : constant := 60_000;
+   Link_Ports_Wcet : constant := 120_000;
+   Link_Beat_Wcet : constant := 60_000;
+   Link_Report_Wcet : constant := 120_000;
    Telling_T : constant := 100_000_000;
    Telling_D : constant := 100_000_000;
    Telling_Divisor : constant := 1;
@@ -270,11 +270,11 @@ is
    --  of every release; C_2: rows of one release in 2, C_10: rows of one
    --  release in 10.
    Estimating_Priority : constant := System.Default_Priority + 5;
-   Estimator_Ports_Wcet : constant := 30_000;
-   Estimator_Predict_Wcet : constant := 80_000;
-   Estimator_Learn_Drift_Wcet : constant := 30_000;
-   Air_Data_Ports_Wcet : constant := 40_000;
-   Air_Data_Filter_Wcet : constant := 60_000;
+   Estimator_Ports_Wcet : constant := 60_000;
+   Estimator_Predict_Wcet : constant := 160_000;
+   Estimator_Learn_Drift_Wcet : constant := 60_000;
+   Air_Data_Ports_Wcet : constant := 80_000;
+   Air_Data_Filter_Wcet : constant := 120_000;
    Estimating_T : constant := 10_000_000;
    Estimating_D : constant := 10_000_000;
    Estimating_Let : constant := 10_000_000;
@@ -313,18 +313,18 @@ is
    --  [guiding] released every T. Let: what it sends is visible so long
    --  after its release. B: pilot.reporter_2 in guide.Flight.queue.
    Guiding_Priority : constant := System.Default_Priority + 4;
-   Guide_Ports_Wcet : constant := 60_000;
-   Guide_Flight_Wcet : constant := 60_000;
-   Guide_Plan_Wcet : constant := 60_000;
-   Guide_Steer_Wcet : constant := 60_000;
-   Angle_1_Ports_Wcet : constant := 30_000;
-   Angle_2_Ports_Wcet : constant := 30_000;
-   Angle_1_Control_Wcet : constant := 40_000;
-   Angle_2_Control_Wcet : constant := 40_000;
-   Coordinator_Ports_Wcet : constant := 30_000;
-   Coordinator_Coordinate_Wcet : constant := 30_000;
-   Motor_Ports_Wcet : constant := 30_000;
-   Motor_Hold_Wcet : constant := 40_000;
+   Guide_Ports_Wcet : constant := 120_000;
+   Guide_Flight_Wcet : constant := 120_000;
+   Guide_Plan_Wcet : constant := 120_000;
+   Guide_Steer_Wcet : constant := 120_000;
+   Angle_1_Ports_Wcet : constant := 60_000;
+   Angle_2_Ports_Wcet : constant := 60_000;
+   Angle_1_Control_Wcet : constant := 80_000;
+   Angle_2_Control_Wcet : constant := 80_000;
+   Coordinator_Ports_Wcet : constant := 60_000;
+   Coordinator_Coordinate_Wcet : constant := 60_000;
+   Motor_Ports_Wcet : constant := 60_000;
+   Motor_Hold_Wcet : constant := 80_000;
    Guiding_T : constant := 20_000_000;
    Guiding_D : constant := 10_000_000;
    Guiding_Let : constant := 10_000_000;
@@ -348,10 +348,10 @@ is
    --  after its release. B: pilot.reporter_2 in guide.Flight.queue. C: rows
    --  of every release; C_4: rows of one release in 4.
    Finding_Priority : constant := System.Default_Priority + 2;
-   Way_Ports_Wcet : constant := 40_000;
-   Way_Locate_Wcet : constant := 80_000;
-   Way_Advance_Wcet : constant := 40_000;
-   Way_Point_Wcet : constant := 30_000;
+   Way_Ports_Wcet : constant := 80_000;
+   Way_Locate_Wcet : constant := 160_000;
+   Way_Advance_Wcet : constant := 80_000;
+   Way_Point_Wcet : constant := 60_000;
    Finding_T : constant := 50_000_000;
    Finding_D : constant := 50_000_000;
    Finding_Let : constant := 50_000_000;
@@ -387,27 +387,27 @@ is
    --  release; C_2: rows of one release in 2, C_20: rows of one release in
    --  20, C_200: rows of one release in 200.
    Moving_Priority : constant := System.Default_Priority + 7;
-   Selector_Ports_Wcet : constant := 60_000;
-   Selector_Choose_Wcet : constant := 40_000;
-   Selector_Paths_Wcet : constant := 40_000;
-   Servo_1_Ports_Wcet : constant := 30_000;
-   Servo_2_Ports_Wcet : constant := 30_000;
-   Servo_3_Ports_Wcet : constant := 30_000;
-   Servo_4_Ports_Wcet : constant := 30_000;
-   Servo_1_Listen_Wcet : constant := 30_000;
-   Servo_2_Listen_Wcet : constant := 30_000;
-   Servo_3_Listen_Wcet : constant := 30_000;
-   Servo_4_Listen_Wcet : constant := 30_000;
-   Servo_1_Drive_Wcet : constant := 40_000;
-   Servo_2_Drive_Wcet : constant := 40_000;
-   Servo_3_Drive_Wcet : constant := 40_000;
-   Servo_4_Drive_Wcet : constant := 40_000;
-   Servo_1_Tell_Wcet : constant := 30_000;
-   Servo_2_Tell_Wcet : constant := 30_000;
-   Servo_3_Tell_Wcet : constant := 30_000;
-   Servo_4_Tell_Wcet : constant := 30_000;
-   Cells_Drain_Wcet : constant := 30_000;
-   Cells_Tell_Wcet : constant := 30_000;
+   Selector_Ports_Wcet : constant := 120_000;
+   Selector_Choose_Wcet : constant := 80_000;
+   Selector_Paths_Wcet : constant := 80_000;
+   Servo_1_Ports_Wcet : constant := 60_000;
+   Servo_2_Ports_Wcet : constant := 60_000;
+   Servo_3_Ports_Wcet : constant := 60_000;
+   Servo_4_Ports_Wcet : constant := 60_000;
+   Servo_1_Listen_Wcet : constant := 60_000;
+   Servo_2_Listen_Wcet : constant := 60_000;
+   Servo_3_Listen_Wcet : constant := 60_000;
+   Servo_4_Listen_Wcet : constant := 60_000;
+   Servo_1_Drive_Wcet : constant := 80_000;
+   Servo_2_Drive_Wcet : constant := 80_000;
+   Servo_3_Drive_Wcet : constant := 80_000;
+   Servo_4_Drive_Wcet : constant := 80_000;
+   Servo_1_Tell_Wcet : constant := 60_000;
+   Servo_2_Tell_Wcet : constant := 60_000;
+   Servo_3_Tell_Wcet : constant := 60_000;
+   Servo_4_Tell_Wcet : constant := 60_000;
+   Cells_Drain_Wcet : constant := 60_000;
+   Cells_Tell_Wcet : constant := 60_000;
    Moving_T : constant := 5_000_000;
    Moving_D : constant := 5_000_000;
    Selector_Ports_Divisor : constant := 2;
@@ -546,7 +546,7 @@ is
 
    --  [flight.driver_rx.gyro_1] the driver, released by flight.gyro_1. B:
    --  acting in pilot.flight.transmit.
-   Flight_Driver_Rx_Gyro_1_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Gyro_1_Wcet : constant := 50_000;
    Flight_Driver_Rx_Gyro_1_T : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_1_D : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_1_J : constant := Flight_Gyro_1_R;
@@ -556,7 +556,7 @@ is
 
    --  [flight.driver_rx.gyro_2] the driver, released by flight.gyro_2. B:
    --  acting in pilot.flight.transmit.
-   Flight_Driver_Rx_Gyro_2_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Gyro_2_Wcet : constant := 50_000;
    Flight_Driver_Rx_Gyro_2_T : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_2_D : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_2_J : constant := Flight_Gyro_2_R;
@@ -566,7 +566,7 @@ is
 
    --  [flight.driver_rx.gyro_3] the driver, released by flight.gyro_3. B:
    --  acting in pilot.flight.transmit.
-   Flight_Driver_Rx_Gyro_3_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Gyro_3_Wcet : constant := 50_000;
    Flight_Driver_Rx_Gyro_3_T : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_3_D : constant := 5_000_000;
    Flight_Driver_Rx_Gyro_3_J : constant := Flight_Gyro_3_R;
@@ -576,7 +576,7 @@ is
 
    --  [flight.driver_rx.probe_1] the driver, released by flight.probe_1. B:
    --  airing in nose.flight.transmit.
-   Flight_Driver_Rx_Probe_1_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Probe_1_Wcet : constant := 50_000;
    Flight_Driver_Rx_Probe_1_T : constant := 20_000_000;
    Flight_Driver_Rx_Probe_1_D : constant := 20_000_000;
    Flight_Driver_Rx_Probe_1_J : constant := Flight_Probe_1_R;
@@ -586,7 +586,7 @@ is
 
    --  [flight.driver_rx.probe_2] the driver, released by flight.probe_2. B:
    --  airing in nose.flight.transmit.
-   Flight_Driver_Rx_Probe_2_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Probe_2_Wcet : constant := 50_000;
    Flight_Driver_Rx_Probe_2_T : constant := 20_000_000;
    Flight_Driver_Rx_Probe_2_D : constant := 20_000_000;
    Flight_Driver_Rx_Probe_2_J : constant := Flight_Probe_2_R;
@@ -596,7 +596,7 @@ is
 
    --  [flight.driver_rx.probe_3] the driver, released by flight.probe_3. B:
    --  airing in nose.flight.transmit.
-   Flight_Driver_Rx_Probe_3_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Probe_3_Wcet : constant := 50_000;
    Flight_Driver_Rx_Probe_3_T : constant := 20_000_000;
    Flight_Driver_Rx_Probe_3_D : constant := 20_000_000;
    Flight_Driver_Rx_Probe_3_J : constant := Flight_Probe_3_R;
@@ -606,7 +606,7 @@ is
 
    --  [backup.driver_rx.order] the driver, released by backup.order. B:
    --  acting in pilot.flight.transmit.
-   Backup_Driver_Rx_Order_Wcet : constant := 20_000;
+   Backup_Driver_Rx_Order_Wcet : constant := 50_000;
    Backup_Driver_Rx_Order_T : constant := 100_000_000;
    Backup_Driver_Rx_Order_D : constant := 100_000_000;
    Backup_Driver_Rx_Order_J : constant := Backup_Order_R;
@@ -616,7 +616,7 @@ is
 
    --  [backup.driver_rx.stick] the driver, released by backup.stick. B:
    --  acting in pilot.flight.transmit.
-   Backup_Driver_Rx_Stick_Wcet : constant := 20_000;
+   Backup_Driver_Rx_Stick_Wcet : constant := 50_000;
    Backup_Driver_Rx_Stick_T : constant := 20_000_000;
    Backup_Driver_Rx_Stick_D : constant := 20_000_000;
    Backup_Driver_Rx_Stick_J : constant := Backup_Stick_R;
@@ -626,7 +626,7 @@ is
 
    --  [flight.driver_tx.surfaces] the driver, released by acting. B: acting
    --  in pilot.flight.transmit.
-   Flight_Driver_Tx_Surfaces_Wcet : constant := 20_000;
+   Flight_Driver_Tx_Surfaces_Wcet : constant := 50_000;
    Flight_Driver_Tx_Surfaces_T : constant := 10_000_000;
    Flight_Driver_Tx_Surfaces_D : constant := 10_000_000;
    Flight_Driver_Tx_Surfaces_J : constant := Acting_R;
@@ -636,7 +636,7 @@ is
 
    --  [flight.driver_rx.surfaces] the driver, released by flight.surfaces.
    --  B: from_flight_tail in tail.flight.receive.
-   Flight_Driver_Rx_Surfaces_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Surfaces_Wcet : constant := 50_000;
    Flight_Driver_Rx_Surfaces_T : constant := 10_000_000;
    Flight_Driver_Rx_Surfaces_D : constant := 10_000_000;
    Flight_Driver_Rx_Surfaces_J : constant := Flight_Surfaces_R;
@@ -646,7 +646,7 @@ is
 
    --  [backup.driver_tx.surfaces_spare] the driver, released by acting. B:
    --  acting in pilot.flight.transmit.
-   Backup_Driver_Tx_Surfaces_Spare_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Surfaces_Spare_Wcet : constant := 50_000;
    Backup_Driver_Tx_Surfaces_Spare_T : constant := 10_000_000;
    Backup_Driver_Tx_Surfaces_Spare_D : constant := 10_000_000;
    Backup_Driver_Tx_Surfaces_Spare_J : constant := Acting_R;
@@ -656,7 +656,7 @@ is
 
    --  [backup.driver_rx.surfaces_spare] the driver, released by
    --  backup.surfaces_spare. B: from_flight_tail in tail.flight.receive.
-   Backup_Driver_Rx_Surfaces_Spare_Wcet : constant := 20_000;
+   Backup_Driver_Rx_Surfaces_Spare_Wcet : constant := 50_000;
    Backup_Driver_Rx_Surfaces_Spare_T : constant := 10_000_000;
    Backup_Driver_Rx_Surfaces_Spare_D : constant := 10_000_000;
    Backup_Driver_Rx_Surfaces_Spare_J : constant := Backup_Surfaces_Spare_R;
@@ -666,7 +666,7 @@ is
 
    --  [flight.driver_tx.air] the driver, released by airing. B: airing in
    --  nose.flight.transmit.
-   Flight_Driver_Tx_Air_Wcet : constant := 20_000;
+   Flight_Driver_Tx_Air_Wcet : constant := 50_000;
    Flight_Driver_Tx_Air_T : constant := 20_000_000;
    Flight_Driver_Tx_Air_D : constant := 20_000_000;
    Flight_Driver_Tx_Air_J : constant := Airing_R;
@@ -676,7 +676,7 @@ is
 
    --  [flight.driver_rx.air] the driver, released by flight.air. B: acting
    --  in pilot.flight.transmit.
-   Flight_Driver_Rx_Air_Wcet : constant := 20_000;
+   Flight_Driver_Rx_Air_Wcet : constant := 50_000;
    Flight_Driver_Rx_Air_T : constant := 20_000_000;
    Flight_Driver_Rx_Air_D : constant := 20_000_000;
    Flight_Driver_Rx_Air_J : constant := Flight_Air_R;
@@ -686,7 +686,7 @@ is
 
    --  [backup.driver_tx.air_spare] the driver, released by airing. B:
    --  airing in nose.flight.transmit.
-   Backup_Driver_Tx_Air_Spare_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Air_Spare_Wcet : constant := 50_000;
    Backup_Driver_Tx_Air_Spare_T : constant := 20_000_000;
    Backup_Driver_Tx_Air_Spare_D : constant := 20_000_000;
    Backup_Driver_Tx_Air_Spare_J : constant := Airing_R;
@@ -696,7 +696,7 @@ is
 
    --  [backup.driver_rx.air_spare] the driver, released by
    --  backup.air_spare. B: acting in pilot.flight.transmit.
-   Backup_Driver_Rx_Air_Spare_Wcet : constant := 20_000;
+   Backup_Driver_Rx_Air_Spare_Wcet : constant := 50_000;
    Backup_Driver_Rx_Air_Spare_T : constant := 20_000_000;
    Backup_Driver_Rx_Air_Spare_D : constant := 20_000_000;
    Backup_Driver_Rx_Air_Spare_J : constant := Backup_Air_Spare_R;
@@ -706,7 +706,7 @@ is
 
    --  [backup.driver_tx.charge] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Charge_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Charge_Wcet : constant := 50_000;
    Backup_Driver_Tx_Charge_T : constant := 1_000_000_000;
    Backup_Driver_Tx_Charge_D : constant := 1_000_000_000;
    Backup_Driver_Tx_Charge_J : constant := Moving_R;
@@ -716,7 +716,7 @@ is
 
    --  [backup.driver_rx.charge] the driver, released by backup.charge. B:
    --  acting in pilot.flight.transmit.
-   Backup_Driver_Rx_Charge_Wcet : constant := 20_000;
+   Backup_Driver_Rx_Charge_Wcet : constant := 50_000;
    Backup_Driver_Rx_Charge_T : constant := 1_000_000_000;
    Backup_Driver_Rx_Charge_D : constant := 1_000_000_000;
    Backup_Driver_Rx_Charge_J : constant := Backup_Charge_R;
@@ -726,7 +726,7 @@ is
 
    --  [backup.driver_tx.telemetry] the driver, released by telling. B:
    --  acting in pilot.flight.transmit.
-   Backup_Driver_Tx_Telemetry_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Telemetry_Wcet : constant := 50_000;
    Backup_Driver_Tx_Telemetry_T : constant := 100_000_000;
    Backup_Driver_Tx_Telemetry_D : constant := 100_000_000;
    Backup_Driver_Tx_Telemetry_J : constant := Telling_R;
@@ -736,7 +736,7 @@ is
 
    --  [backup.driver_tx.path] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Path_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Path_Wcet : constant := 50_000;
    Backup_Driver_Tx_Path_T : constant := 10_000_000;
    Backup_Driver_Tx_Path_D : constant := 10_000_000;
    Backup_Driver_Tx_Path_J : constant := Moving_R;
@@ -746,7 +746,7 @@ is
 
    --  [backup.driver_tx.left] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Left_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Left_Wcet : constant := 50_000;
    Backup_Driver_Tx_Left_T : constant := 100_000_000;
    Backup_Driver_Tx_Left_D : constant := 100_000_000;
    Backup_Driver_Tx_Left_J : constant := Moving_R;
@@ -756,7 +756,7 @@ is
 
    --  [backup.driver_tx.right] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Right_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Right_Wcet : constant := 50_000;
    Backup_Driver_Tx_Right_T : constant := 100_000_000;
    Backup_Driver_Tx_Right_D : constant := 100_000_000;
    Backup_Driver_Tx_Right_J : constant := Moving_R;
@@ -766,7 +766,7 @@ is
 
    --  [backup.driver_tx.rudder] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Rudder_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Rudder_Wcet : constant := 50_000;
    Backup_Driver_Tx_Rudder_T : constant := 100_000_000;
    Backup_Driver_Tx_Rudder_D : constant := 100_000_000;
    Backup_Driver_Tx_Rudder_J : constant := Moving_R;
@@ -776,7 +776,7 @@ is
 
    --  [backup.driver_tx.throttle] the driver, released by moving. B:
    --  from_flight_tail in tail.flight.receive.
-   Backup_Driver_Tx_Throttle_Wcet : constant := 20_000;
+   Backup_Driver_Tx_Throttle_Wcet : constant := 50_000;
    Backup_Driver_Tx_Throttle_T : constant := 100_000_000;
    Backup_Driver_Tx_Throttle_D : constant := 100_000_000;
    Backup_Driver_Tx_Throttle_J : constant := Moving_R;
@@ -1417,7 +1417,7 @@ is
 
    --  [gyro_1.ports] Done: the time from the event of its processor until
    --  it is done
-   Gyro_1_Ports_Done : constant := 655_000;
+   Gyro_1_Ports_Done : constant := 1_295_000;
    Gyro_1_Ports_W : constant := Gyro_1_Ports_Done - Sensing_J;
    Gyro_1_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Gyro_1_Ports_Wcet + Sensing_B
@@ -1427,7 +1427,7 @@ is
 
    --  [gyro_1.scale] Done: the time from the event of its processor until
    --  it is done
-   Gyro_1_Scale_Done : constant := 755_000;
+   Gyro_1_Scale_Done : constant := 1_495_000;
    Gyro_1_Scale_W : constant := Gyro_1_Scale_Done - Sensing_J;
    Gyro_1_Scale_Needs : constant :=
      2 * Pilot_Context_Switch + Gyro_1_Ports_Wcet + Gyro_2_Ports_Wcet
@@ -1438,7 +1438,7 @@ is
 
    --  [gyro_vote.ports] Done: the time from the event of its processor
    --  until it is done
-   Gyro_Vote_Ports_Done : constant := 895_000;
+   Gyro_Vote_Ports_Done : constant := 1_775_000;
    Gyro_Vote_Ports_W : constant := Gyro_Vote_Ports_Done - Sensing_J;
    Gyro_Vote_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Gyro_1_Ports_Wcet + Gyro_2_Ports_Wcet
@@ -1450,7 +1450,7 @@ is
 
    --  [gyro_vote.vote] Done: the time from the event of its processor until
    --  it is done
-   Gyro_Vote_Vote_Done : constant := 1_165_000;
+   Gyro_Vote_Vote_Done : constant := 1_995_000;
    Gyro_Vote_Vote_W : constant := Gyro_Vote_Vote_Done - Sensing_J;
    Gyro_Vote_Vote_Needs : constant :=
      2 * Pilot_Context_Switch + Gyro_1_Ports_Wcet + Gyro_2_Ports_Wcet
@@ -1472,7 +1472,7 @@ is
 
    --  [rate_1.ports] Done: the time from the event of its processor until
    --  it is done
-   Rate_1_Ports_Done : constant := 1_245_000;
+   Rate_1_Ports_Done : constant := 2_355_000;
    Rate_1_Ports_W : constant := Rate_1_Ports_Done - Acting_J;
    Rate_1_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Rate_1_Ports_Wcet + Acting_B
@@ -1482,7 +1482,7 @@ is
 
    --  [rate_1.control] Done: the time from the event of its processor until
    --  it is done
-   Rate_1_Control_Done : constant := 1_365_000;
+   Rate_1_Control_Done : constant := 2_595_000;
    Rate_1_Control_W : constant := Rate_1_Control_Done - Acting_J;
    Rate_1_Control_Needs : constant :=
      2 * Pilot_Context_Switch + Rate_1_Ports_Wcet + Rate_2_Ports_Wcet
@@ -1493,7 +1493,7 @@ is
 
    --  [mix.ports] Done: the time from the event of its processor until it
    --  is done
-   Mix_Ports_Done : constant := 1_545_000;
+   Mix_Ports_Done : constant := 2_955_000;
    Mix_Ports_W : constant := Mix_Ports_Done - Acting_J;
    Mix_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Rate_1_Ports_Wcet + Rate_2_Ports_Wcet
@@ -1531,7 +1531,7 @@ is
 
    --  [estimator.ports] Done: the time from the event of its processor
    --  until it is done
-   Estimator_Ports_Done : constant := 55_000;
+   Estimator_Ports_Done : constant := 85_000;
    Estimator_Ports_W : constant := Estimator_Ports_Done - Estimating_J;
    Estimator_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Estimator_Ports_Wcet + Estimating_B;
@@ -1540,7 +1540,7 @@ is
 
    --  [estimator.predict] Done: the time from the event of its processor
    --  until it is done
-   Estimator_Predict_Done : constant := 135_000;
+   Estimator_Predict_Done : constant := 245_000;
    Estimator_Predict_W : constant := Estimator_Predict_Done - Estimating_J;
    Estimator_Predict_Needs : constant :=
      2 * Pilot_Context_Switch + Estimator_Ports_Wcet
@@ -1562,7 +1562,7 @@ is
 
    --  [guide.ports] Done: the time from the event of its processor until it
    --  is done
-   Guide_Ports_Done : constant := 345_000;
+   Guide_Ports_Done : constant := 645_000;
    Guide_Ports_W : constant := Guide_Ports_Done - Guiding_J;
    Guide_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Guide_Ports_Wcet + Guiding_B
@@ -1572,7 +1572,7 @@ is
 
    --  [guide.plan] Done: the time from the event of its processor until it
    --  is done
-   Guide_Plan_Done : constant := 465_000;
+   Guide_Plan_Done : constant := 885_000;
    Guide_Plan_W : constant := Guide_Plan_Done - Guiding_J;
    Guide_Plan_Needs : constant :=
      2 * Pilot_Context_Switch + Guide_Ports_Wcet + Guide_Flight_Wcet
@@ -1582,7 +1582,7 @@ is
 
    --  [guide.steer] Done: the time from the event of its processor until it
    --  is done
-   Guide_Steer_Done : constant := 525_000;
+   Guide_Steer_Done : constant := 1_005_000;
    Guide_Steer_W : constant := Guide_Steer_Done - Guiding_J;
    Guide_Steer_Needs : constant :=
      2 * Pilot_Context_Switch + Guide_Ports_Wcet + Guide_Flight_Wcet
@@ -1593,7 +1593,7 @@ is
 
    --  [angle_1.ports] Done: the time from the event of its processor until
    --  it is done
-   Angle_1_Ports_Done : constant := 555_000;
+   Angle_1_Ports_Done : constant := 1_065_000;
    Angle_1_Ports_W : constant := Angle_1_Ports_Done - Guiding_J;
    Angle_1_Ports_Needs : constant :=
      2 * Pilot_Context_Switch + Guide_Ports_Wcet + Guide_Flight_Wcet
@@ -1604,7 +1604,7 @@ is
 
    --  [angle_1.control] Done: the time from the event of its processor
    --  until it is done
-   Angle_1_Control_Done : constant := 625_000;
+   Angle_1_Control_Done : constant := 1_205_000;
    Angle_1_Control_W : constant := Angle_1_Control_Done - Guiding_J;
    Angle_1_Control_Needs : constant :=
      2 * Pilot_Context_Switch + Guide_Ports_Wcet + Guide_Flight_Wcet
@@ -1637,7 +1637,7 @@ is
 
    --  [selector.ports] Done: the time from the event of its processor until
    --  it is done
-   Selector_Ports_Done : constant := 565_000;
+   Selector_Ports_Done : constant := 925_000;
    Selector_Ports_W : constant := Selector_Ports_Done - Moving_J;
    Selector_Ports_Needs : constant :=
      2 * Tail_Context_Switch + Selector_Ports_Wcet + Moving_B
@@ -1647,7 +1647,7 @@ is
 
    --  [selector.choose] Done: the time from the event of its processor
    --  until it is done
-   Selector_Choose_Done : constant := 545_000;
+   Selector_Choose_Done : constant := 885_000;
    Selector_Choose_W : constant := Selector_Choose_Done - Moving_J;
    Selector_Choose_Needs : constant :=
      2 * Tail_Context_Switch + Selector_Choose_Wcet + Moving_B
@@ -1657,7 +1657,7 @@ is
 
    --  [servo_1.ports] Done: the time from the event of its processor until
    --  it is done
-   Servo_1_Ports_Done : constant := 595_000;
+   Servo_1_Ports_Done : constant := 985_000;
    Servo_1_Ports_W : constant := Servo_1_Ports_Done - Moving_J;
    Servo_1_Ports_Needs : constant :=
      2 * Tail_Context_Switch + Selector_Ports_Wcet + Servo_1_Ports_Wcet
@@ -1667,7 +1667,7 @@ is
 
    --  [servo_1.listen] Done: the time from the event of its processor until
    --  it is done
-   Servo_1_Listen_Done : constant := 655_000;
+   Servo_1_Listen_Done : constant := 1_325_000;
    Servo_1_Listen_W : constant := Servo_1_Listen_Done - Moving_J;
    Servo_1_Listen_Needs : constant :=
      2 * Tail_Context_Switch + Selector_Ports_Wcet + Servo_1_Ports_Wcet
@@ -1678,7 +1678,7 @@ is
 
    --  [servo_1.drive] Done: the time from the event of its processor until
    --  it is done
-   Servo_1_Drive_Done : constant := 725_000;
+   Servo_1_Drive_Done : constant := 1_465_000;
    Servo_1_Drive_W : constant := Servo_1_Drive_Done - Moving_J;
    Servo_1_Drive_Needs : constant :=
      2 * Tail_Context_Switch + Selector_Ports_Wcet + Servo_1_Ports_Wcet
@@ -2475,7 +2475,7 @@ is
      (Demand (W, Flight_Driver_Rx_Gyro_2_R, Flight_Gyro_2_T,
          From_Flight_Pilot_T, Flight_Gyro_3_Turn_Rest (W))) with Static;
 
-   From_Flight_Pilot_Busy : constant := 4_000_000;
+   From_Flight_Pilot_Busy : constant := 7_000_000;
    From_Flight_Pilot_Busy_Needs : constant :=
      Flight_Air_Turn_Up (From_Flight_Pilot_Busy);
    pragma Compile_Time_Error
@@ -2487,17 +2487,26 @@ is
    --  ends. Handed: the time until it is handed over.
    Flight_Gyro_1_Turn_J : constant := Flight_Driver_Rx_Gyro_1_R;
    pragma Compile_Time_Error
-     (From_Flight_Pilot_Busy + Flight_Gyro_1_Turn_J > Flight_Gyro_1_T,
+     (From_Flight_Pilot_Busy + Flight_Gyro_1_Turn_J > 2 * Flight_Gyro_1_T,
       "flight.gyro_1 can come again before it is sent");
-   Flight_Gyro_1_Turn_W : constant := 3_000_000;
-   Flight_Gyro_1_Turn_Needs : constant :=
-     Flight_Gyro_2_Turn_Rest (Flight_Gyro_1_Turn_W + 1);
+   Flight_Gyro_1_Turn_W_1 : constant := 3_000_000;
+   Flight_Gyro_1_Turn_Needs_1 : constant :=
+     Flight_Gyro_2_Turn_Rest (Flight_Gyro_1_Turn_W_1 + 1);
    pragma Compile_Time_Error
-     (Flight_Gyro_1_Turn_W /= Flight_Gyro_1_Turn_Needs,
+     (Flight_Gyro_1_Turn_W_1 /= Flight_Gyro_1_Turn_Needs_1,
       "flight.gyro_1 claims a wrong response time");
-   Flight_Gyro_1_Turn : constant := 3_725_000;
+   Flight_Gyro_1_Turn_W_2 : constant := 6_000_000;
+   Flight_Gyro_1_Turn_Needs_2 : constant :=
+     From_Flight_Pilot_T
+     + Flight_Gyro_2_Turn_Rest (Flight_Gyro_1_Turn_W_2 + 1);
    pragma Compile_Time_Error
-     (Flight_Gyro_1_Turn /= Flight_Gyro_1_Turn_J + Flight_Gyro_1_Turn_W,
+     (Flight_Gyro_1_Turn_W_2 /= Flight_Gyro_1_Turn_Needs_2,
+      "flight.gyro_1 claims a wrong response time");
+   Flight_Gyro_1_Turn : constant := 4_055_000;
+   pragma Compile_Time_Error
+     (Flight_Gyro_1_Turn
+      /= Time'Max (Flight_Gyro_1_Turn_J + Flight_Gyro_1_Turn_W_1,
+           Flight_Gyro_1_Turn_J + Flight_Gyro_1_Turn_W_2 - Flight_Gyro_1_T),
       "flight.gyro_1 claims a wrong response time");
    Flight_Gyro_1_Handed : constant :=
      Flight_Gyro_1_Turn + 2 * From_Flight_Pilot_R;
@@ -2526,7 +2535,7 @@ is
    pragma Compile_Time_Error
      (Flight_Surfaces_Turn_W /= Flight_Surfaces_Turn_Needs,
       "flight.surfaces claims a wrong response time");
-   Flight_Surfaces_Turn : constant := 3_375_000;
+   Flight_Surfaces_Turn : constant := 5_665_000;
    pragma Compile_Time_Error
      (Flight_Surfaces_Turn
       /= Flight_Surfaces_Turn_J + Flight_Surfaces_Turn_W,
@@ -3010,7 +3019,7 @@ is
    pragma Compile_Time_Error
      (Backup_Stick_Turn_W /= Backup_Stick_Turn_Needs,
       "backup.stick claims a wrong response time");
-   Backup_Stick_Turn : constant := 4_455_000;
+   Backup_Stick_Turn : constant := 4_785_000;
    pragma Compile_Time_Error
      (Backup_Stick_Turn /= Backup_Stick_Turn_J + Backup_Stick_Turn_W,
       "backup.stick claims a wrong response time");
@@ -3043,7 +3052,7 @@ is
    pragma Compile_Time_Error
      (Backup_Surfaces_Spare_Turn_W /= Backup_Surfaces_Spare_Turn_Needs,
       "backup.surfaces_spare claims a wrong response time");
-   Backup_Surfaces_Spare_Turn : constant := 4_335_000;
+   Backup_Surfaces_Spare_Turn : constant := 6_625_000;
    pragma Compile_Time_Error
      (Backup_Surfaces_Spare_Turn
       /= Backup_Surfaces_Spare_Turn_J + Backup_Surfaces_Spare_Turn_W,
@@ -3063,7 +3072,7 @@ is
         /= Sensing_T / Chain_Inner_8_Grid * Chain_Inner_8_Grid
       or else Acting_T /= Acting_T / Chain_Inner_8_Grid * Chain_Inner_8_Grid,
       "chain inner supposes other instants");
-   Chain_Inner_Reaction : constant := 55_875_000;
+   Chain_Inner_Reaction : constant := 61_195_000;
    Chain_Inner_Reaction_Limit : constant := 80_000_000;
    Chain_Inner_Reaction_Needs : constant :=
      Flight_Gyro_1_Handed + Sensing_T + Sensing_Let
@@ -3112,7 +3121,7 @@ is
       or else Acting_T
         /= Acting_T / Chain_Outer_12_Grid * Chain_Outer_12_Grid,
       "chain outer supposes other instants");
-   Chain_Outer_Reaction : constant := 86_955_000;
+   Chain_Outer_Reaction : constant := 92_335_000;
    Chain_Outer_Reaction_Limit : constant := 160_000_000;
    Chain_Outer_Reaction_Needs : constant :=
      Flight_Gyro_1_Handed + Sensing_T + Sensing_Let
@@ -3141,7 +3150,7 @@ is
         /= Guiding_T / Chain_Stick_9_Grid * Chain_Stick_9_Grid
       or else Acting_T /= Acting_T / Chain_Stick_9_Grid * Chain_Stick_9_Grid,
       "chain stick supposes other instants");
-   Chain_Stick_Reaction : constant := 39_890_000;
+   Chain_Stick_Reaction : constant := 43_830_000;
    Chain_Stick_Reaction_Limit : constant := 150_000_000;
    Chain_Stick_Reaction_Needs : constant :=
      Backup_Stick_Handed + Guiding_T + Guiding_Let

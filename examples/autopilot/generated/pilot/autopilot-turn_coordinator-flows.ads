@@ -10,5 +10,5 @@ is
       Turn      : out Autopilot.Rate;
       Send_Turn : out Boolean)
    with Global => null;
-   --  [Turn_Coordinator.coordinate] WCET 30_000 ns, every 20_000_000 ns
+   --  [Turn_Coordinator.coordinate] WCET 60_000 ns, every 20_000_000 ns
 end Autopilot.Turn_Coordinator.Flows;

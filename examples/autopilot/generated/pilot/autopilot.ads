@@ -43,6 +43,10 @@ is
      Ravenchart.Number
      range Ravenchart.Number'Val (-60_000)
      .. 60_000;
+   subtype Fine_Angle is
+     Ravenchart.Number
+     range Ravenchart.Number'Val (-1_800_000)
+     .. 1_800_000;
    subtype Sum is
      Ravenchart.Number
      range Ravenchart.Number'Val (-1_000_000)

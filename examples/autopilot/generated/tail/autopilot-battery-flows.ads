@@ -7,12 +7,12 @@ with SPARK_Mode
 is
    procedure Drain (Left : in out Autopilot.Charge)
    with Global => null;
-   --  [Battery.drain] WCET 30_000 ns, every 1_000_000_000 ns
+   --  [Battery.drain] WCET 60_000 ns, every 1_000_000_000 ns
 
    procedure Tell
      (Left        : Autopilot.Charge;
       Charge      : out Autopilot.Charge;
       Send_Charge : out Boolean)
    with Global => null;
-   --  [Battery.tell] WCET 30_000 ns, every 1_000_000_000 ns
+   --  [Battery.tell] WCET 60_000 ns, every 1_000_000_000 ns
 end Autopilot.Battery.Flows;

@@ -10,17 +10,17 @@ is
       Channel  : Autopilot.Channel;
       Wanted   : out Autopilot.Deflection)
    with Global => null;
-   --  [Servo.listen] WCET 30_000 ns, every 10_000_000 ns
+   --  [Servo.listen] WCET 60_000 ns, every 10_000_000 ns
 
    procedure Drive
      (Wanted : Autopilot.Deflection; Place : in out Autopilot.Deflection)
    with Global => null;
-   --  [Servo.drive] WCET 40_000 ns, every 10_000_000 ns
+   --  [Servo.drive] WCET 80_000 ns, every 10_000_000 ns
 
    procedure Tell
      (Place         : Autopilot.Deflection;
       Position      : out Autopilot.Deflection;
       Send_Position : out Boolean)
    with Global => null;
-   --  [Servo.tell] WCET 30_000 ns, every 100_000_000 ns
+   --  [Servo.tell] WCET 60_000 ns, every 100_000_000 ns
 end Autopilot.Servo.Flows;

@@ -11,5 +11,5 @@ is
       Surfaces      : out Autopilot.Surfaces;
       Send_Surfaces : out Boolean)
    with Global => null;
-   --  [Surface_Selector.choose] WCET 40_000 ns, every 10_000_000 ns
+   --  [Surface_Selector.choose] WCET 80_000 ns, every 10_000_000 ns
 end Autopilot.Surface_Selector.Flows;
