@@ -127,9 +127,9 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
             if link is None or row not in link.rows:
                 yield from (Stage(came, jobs), Stage(ran))
             else:
-                sent = _releases(system, row, came)
+                sent = _releases(system, seen, row, came)
                 yield Stage(came, jobs, [release + link.lasting for release in sent])
-                yield Stage(_releases(system, link.handler, ran), later=ran)
+                yield Stage(_releases(system, seen, link.handler, ran), later=ran)
             jobs = ()
         elif str(place) in rows:
             times = [r.time for r in seen.of("activity", str(place))]
@@ -137,8 +137,13 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
             jobs, row = times, str(place)
 
 
-def _releases(system: System, row: str, times: Sequence[int]) -> list[int]:
-    """The releases of the executions of a row in which these times are, all deadlines met."""
+def _releases(system: System, seen: Observation, row: str, times: Sequence[int]) -> list[int]:
+    """The releases of the executions of a row in which these times are, all deadlines met.
+
+    Releases count from the start of their own node, times from the first start of all.
+    """
     place = timed_row(system, row)
-    first, period = first_of(*place), period_of(*place)
+    part = seen.parts.get(place[0].node)
+    epoch = 0 if part is None else part.start - seen.start
+    first, period = epoch + first_of(*place), period_of(*place)
     return [first + (time - first) // period * period for time in times]

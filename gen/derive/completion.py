@@ -203,7 +203,7 @@ def on_one_node(system: System) -> System:
 
 def on_one_core(system: System) -> System:
     """The same with all tasks of its only node on one core, and the objects that they share."""
-    if all(node.cores == 1 for node in system.nodes):
+    if all(task.core == 1 for task in system.tasks):
         return system
     one = replace(
         system,
