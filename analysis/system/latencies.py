@@ -28,11 +28,12 @@ from ravenchart.analysis.core.holistic import Holistic, Network
 from ravenchart.analysis.core.platform import Platform
 from ravenchart.analysis.core.responses import Level, Response
 from ravenchart.analysis.core.tasks import Task
+from ravenchart.gen.derive.calls import calls_at_once
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
-from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.logical import logical_links, saved_wait, timed_row
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
@@ -218,6 +219,10 @@ class Latencies:
     ) -> ChainStep:
         """A row: later in the same job as the step before, or at its own times."""
         woken = port is not None and bool(steps) and self.system.woken_by(place) is not None
+        called = self.rows[row][0].released_by
+        if isinstance(called, Requests) and steps and self.rows[row][1] == 0:
+            made = ChainStep(row, HopKind.WOKEN, puts=calls_at_once(self.system, called))
+            return self._rare(made, self.rows[row][0], steps[-1].name)
         queued = not woken and port is not None and port.kind is PortKind.QUEUED and bool(steps)
         senders = self._senders(place) if queued or woken else ()
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
@@ -236,7 +241,7 @@ class Latencies:
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
         processor, at = self.rows[row]
         slot = processor.slots[at]
-        if processor.released_by_port is not None and made.hop is not HopKind.RELEASED:
+        if processor.released_by_value is not None and made.hop is not HopKind.RELEASED:
             made = self._rare(made, processor, before)
         regions = self.system.instance(slot.owner).component.regions
         if any(region.name == slot.name and region.takes_turns for region in regions):

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.commands import (
     Binding,
@@ -17,7 +18,7 @@ from ravenchart.gen.model.commands import (
     Server,
 )
 from ravenchart.gen.model.component import Activity, Component
-from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import System
 
@@ -127,6 +128,19 @@ def callers_of(system: System, instance: str, provided: Provided) -> tuple[Bindi
         and (b.provider.instance, b.provider.interface) == (instance, provided)
         and published_by(b) is None
     )
+
+
+def calls_at_once(system: System, served: Requests) -> int:
+    """The calls of an interface that one execution of its caller makes at most."""
+    provided = named(system.instance(served.instance).component.provides, served.name)
+    found: dict[str, int] = {}
+    for binding in callers_of(system, served.instance, provided):
+        component = system.instance(binding.instance).component
+        for row in component.senders(binding.need.name):
+            times = getattr(row, "steps_per_execution", 1)
+            element = f"{binding.instance}.{row.name}"
+            found[element] = found.get(element, 0) + times
+    return max(found.values(), default=1)
 
 
 def serving(server: Server) -> End:

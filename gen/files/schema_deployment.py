@@ -191,8 +191,9 @@ class ProcessorForm(Element):
         "every node that receives from its bus."
     )
     released_by: PathReference | None = optional(
-        "The bus, or the queued input port `instance.port`, that releases it: then it is sporadic. "
-        "It handles the reception of the bus, or the values of the port."
+        "The bus, the queued input port `instance.port`, or the provided interface "
+        "`instance.Interface` that releases it: then it is sporadic. It handles the reception of "
+        "the bus, the values of the port, or the calls of the interface."
     )
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."

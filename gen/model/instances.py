@@ -26,6 +26,19 @@ class End:
 
 
 @dataclass(frozen=True, slots=True)
+class Requests:
+    """The queue of a provided interface of an instance: the calls that its server executes."""
+
+    instance: str
+    name: str
+    """The interface."""
+
+    def __str__(self) -> str:
+        """``instance.interface``."""
+        return f"{self.instance}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
 class Delegation:
     """A port or required interface that is reached by one of a composite instance around it."""
 

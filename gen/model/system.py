@@ -23,7 +23,7 @@ from ravenchart.gen.origins import Origin
 from .buses import Bus, Message, Reception
 from .commands import Binding, Device, Poll
 from .component import Component
-from .instances import Connection, End, Instance
+from .instances import Connection, End, Instance, Requests
 from .nodes import Node
 from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
@@ -81,7 +81,7 @@ class Slot:
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
-    That is a bus whose frames it receives, or a queued input port.
+    That is a bus whose frames it receives, a queued input port, or a provided interface.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -94,7 +94,7 @@ class Processor:
     deadline: Ns
     priority: int
     stack_bytes: int
-    released_by: str | End | None
+    released_by: str | End | Requests | None
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
@@ -115,6 +115,11 @@ class Processor:
     def released_by_port(self) -> End | None:
         """The queued port whose values release it; None where time or a bus does."""
         return self.released_by if isinstance(self.released_by, End) else None
+
+    @property
+    def released_by_value(self) -> End | Requests | None:
+        """The queued port or interface whose values or calls release it."""
+        return None if isinstance(self.released_by, str) else self.released_by
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
@@ -352,7 +357,7 @@ class System:
         homes = tuple(dict.fromkeys(self.home(end) for end in message.targets))
         return tuple(Reception(message, home, len(homes) > 1) for home in homes)
 
-    def received(self, bus: str | End | None, node: str) -> tuple[Reception, ...]:
+    def received(self, bus: str | End | Requests | None, node: str) -> tuple[Reception, ...]:
         """The receptions of a node from a bus, in model order."""
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
@@ -424,6 +429,10 @@ class System:
     @cached_property
     def _woken(self) -> dict[End, Processor]:
         return {p.released_by_port: p for p in self.processors if p.released_by_port}
+
+    def called(self, served: Requests) -> Processor | None:
+        """The processor that the calls of an interface release; None where none is."""
+        return next((one for one in self.processors if one.released_by == served), None)
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""

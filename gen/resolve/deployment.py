@@ -27,7 +27,7 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
 from ravenchart.gen.model.component import Direction
-from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.nodes import SNAPSHOT_PERIOD, MonitorStream, Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
@@ -42,7 +42,7 @@ from ravenchart.gen.model.system import (
 )
 from ravenchart.gen.origins import Origin
 
-from .components import timing_of
+from .components import Parts, timing_of
 from .composites import connectable
 from .paths import DeploymentNames, event_at, member_of, split
 
@@ -277,8 +277,8 @@ def _logical(name: str, form: ProcessorForm, period: Ns, findings: Findings) -> 
     return given
 
 
-def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | None:
-    """The bus or input port that releases a processor."""
+def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | Requests | None:
+    """The bus, input port or provided interface that releases a processor."""
     if "." not in text:
         if not site.buses.knows(text):
             site.owners.used(text, origin, site.findings)  # the name of a bus or an instance
@@ -301,7 +301,13 @@ def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | N
     if found is None:
         return None
     instance, parts, name = found
-    port = connectable(parts).look_up(name, origin, site.findings)
+    ports = connectable(parts)
+    if not ports.knows(name):
+        offered = parts.component.provides if isinstance(parts, Parts) else ()
+        served = next((one for one in offered if one.name.lower() == name.lower()), None)
+        if served is not None:
+            return Requests(instance.name, served.name)
+    port = ports.look_up(name, origin, site.findings)
     if port is None:
         return None
     end = End(instance.name, port.name)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rules for processors that a queued port releases: the ports, and the rows of the tables.
+"""Rules for processors that a queued port or an interface releases: these, and their tables.
 
 A value of one periodic row releases the processor. Its table handles that value and nothing
 else, so no row of it counts executions as time, and none waits for a value that another port has.
@@ -11,11 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from ravenchart.gen.derive.calls import asking, callers_of
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.quantities import shown
-from ravenchart.gen.model.commands import Device
+from ravenchart.gen.language.terms import named
+from ravenchart.gen.model.commands import Binding, Device, Provided, Remote, Server
 from ravenchart.gen.model.component import PortKind
-from ravenchart.gen.model.instances import Connection, End, Instance
+from ravenchart.gen.model.instances import Connection, End, Instance, Requests
 from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.system import Resolved
@@ -117,6 +119,8 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
             message = f"{cannot}: {component.name} has another input port, `{port.name}`"
             yield message, port.origin, f"`{port.name}` is declared here", apart
     for provided in component.provides:
+        if provided.name == end.name:
+            continue
         message = f"{cannot}: {component.name} provides the interface `{provided.name}`"
         yield message, provided.origin, f"`{provided.name}` is declared here", apart
     for activity in component.activities:
@@ -184,7 +188,84 @@ def _runs(system: System, element: str) -> Processor | None:
     return next((one for name, one in rows if name == element), None)
 
 
+# --- Calls of an interface -------------------------------------------------------------
+
+
+def calls_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
+    """One periodic row calls the interface, and its instance has nothing that needs time."""
+    system = resolved.system
+    for processor in system.processors:
+        called = processor.released_by
+        if not isinstance(called, Requests):
+            continue
+        instance = system.instance(called.instance)
+        if instance.component.name in resolved.damaged:
+            continue
+        at = processor.released_at or processor.origin
+        provided = named(instance.component.provides, called.name)
+        end = End(called.instance, called.name)
+        problems = [*_of_instance(system, instance, end)]
+        if not problems and {"processors", "instances"} <= resolved.sound_sections:
+            problems += _of_callers(system, instance, provided)
+        for message, declared, words, hint in problems:
+            yield error(UNFIT_PORT, at, message, notes=[(declared, words)], hint=hint)
+        if "processors" in resolved.sound_sections and provided.server is not None:
+            yield from _serves(processor, instance, provided.server)
+
+
+def _serves(processor: Processor, instance: Instance, server: str) -> Iterator[Diagnostic]:
+    """The row that executes the calls first, then activities of the instance, in each release."""
+    first = f"{instance.name}.{server}"
+    if not processor.slots or processor.slots[0].element != first:
+        message = f"{processor.name} is released by {processor.released_by}, but does not begin "
+        message += f"with {first}, which executes its calls"
+        yield error(TABLE, processor.origin, message, hint=f"begin its table with `{first}`")
+    for slot in processor.slots:
+        if slot.owner != instance.name or slot.work is not Work.ACTIVITY:
+            message = f"{processor.name} is released by {processor.released_by}, but holds "
+            message += slot.element
+            hint = "move it to a periodic processor"
+            yield error(TABLE, slot.origin, message, hint=hint)
+        elif slot.timing.period != processor.period:
+            message = (
+                f"the period of {slot.element} is {shown(slot.timing.period)}, but "
+                f"{processor.name} runs it in each of its releases, which are "
+                f"{shown(processor.period)} apart at least"
+            )
+            hint = f"give {slot.element} and {processor.name} the same `period`"
+            yield error(TABLE, slot.origin, message, hint=hint)
+
+
+def _of_callers(system: System, instance: Instance, provided: Provided) -> Iterator[Problem]:
+    """The calls come from one row of a periodic processor of the same node."""
+    cannot = f"{instance.name}.{provided.name} cannot release a processor"
+    periodic = "let one row of a periodic processor call it"
+    for binding in system.bindings:
+        remote = binding.provider
+        if isinstance(remote, Remote) and remote.server == Server(instance.name, provided):
+            message = f"{cannot}: {binding.instance} calls it from another node"
+            yield message, binding.origin, "that is bound here", periodic
+    rows: dict[str, Binding] = {}
+    for binding in callers_of(system, instance.name, provided):
+        for place in asking(system, binding):
+            rows.setdefault(str(place), binding)
+    for row, binding in list(rows.items())[1:]:
+        message = f"{cannot}: {next(iter(rows))} and {row} both call it"
+        yield message, binding.origin, "that is bound here", periodic
+    for row, binding in rows.items():
+        caller, _, name = row.rpartition(".")
+        component = system.instance(caller).component
+        processor = _runs(system, row)
+        if processor is not None and processor.released_by is not None:
+            message = f"{cannot}: {row} calls it, which {processor.released_by} releases"
+            yield message, binding.origin, "that is bound here", periodic
+        elif component.served_by(name) is not None:
+            message = f"{cannot}: {row} calls it, which serves calls itself"
+            yield message, binding.origin, "that is bound here", periodic
+
+
 RELEASE_RULES: tuple[Callable[[Resolved], Iterator[Diagnostic]], ...] = (
     ports_can_release,
     tables_handle_the_port,
+    calls_can_release,
 )

@@ -345,7 +345,7 @@ def reception_has_its_processor(resolved: Resolved) -> Iterator[Diagnostic]:
     """A sporadic processor holds its bus's reception and nothing else."""
     system = resolved.system
     for processor in system.processors:
-        if processor.released_by_port is not None:
+        if processor.released_by_value is not None:
             continue  # see `releases`
         for slot in processor.slots:
             is_reception = slot.work is Work.BUS_RECEIVE

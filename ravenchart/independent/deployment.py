@@ -383,8 +383,10 @@ class Deployment:
         )
 
     def _releasing(self, end: str) -> str:
-        """A queued port that releases a processor."""
+        """A queued port or an interface whose calls release a processor."""
         owner, _, port = end.rpartition(".")
+        if self.component_of(owner).map("provides").name(port):
+            return end
         ports = self.component_of(owner).map("ports")
         if ports.map(ports.name(port) or "").text("kind") != "queued":
             raise UnusableError(f"`{end}` is no queued port")

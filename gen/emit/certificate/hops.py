@@ -13,9 +13,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from ravenchart.gen.derive.calls import calls_at_once
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
-from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.logical import LogicalLink, logical_links
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
@@ -127,7 +128,11 @@ def _row(
     """A region or activity."""
     follows = bool(hops) and _follows(system, hops[-1], element)
     waits = isinstance(row, Region) and row.takes_turns
-    if not follows and system.processor_of(element).released_by_port is not None:
+    processor = system.processor_of(element)
+    called = processor.released_by
+    if isinstance(called, Requests) and hops and element == processor.slots[0].element:
+        return ClaimedHop(element, "row", "woken", calls_at_once(system, called))
+    if not follows and processor.released_by_value is not None:
         return ClaimedHop(element, "row", "sampled", open=True, sure=False)
     return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)
 

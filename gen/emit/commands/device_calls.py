@@ -60,7 +60,7 @@ from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
 from ravenchart.gen.model.component import Component, Port
-from ravenchart.gen.model.instances import Instance
+from ravenchart.gen.model.instances import Instance, Requests
 from ravenchart.gen.model.system import System
 
 from .remote_calls import (
@@ -398,7 +398,9 @@ def request_queue(system: System, instance: Instance, provided: Provided) -> Gen
         Ceiling=priority(system.object(element).ceiling),
         Policy=ref("Ravenchart.Queueing.Reject_Newest"),
     )
-    return GenericInstance(f"{ada_case(provided.name)}_Queue", "Ravenchart.Queues", args)
+    woken = system.called(Requests(instance.name, provided.name)) is not None
+    generic = "Ravenchart.Releasing_Queues" if woken else "Ravenchart.Queues"
+    return GenericInstance(f"{ada_case(provided.name)}_Queue", generic, args)
 
 
 def published(system: System, instance: Instance) -> Iterator[tuple[Subprogram, str]]:

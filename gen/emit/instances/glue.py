@@ -98,7 +98,7 @@ from ravenchart.gen.model.system import System, Work
 from .fills import fill_bodies, fill_specs, queued_regions
 from .instants import instant_objects, next_instants, units_of_instants
 from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
-from .releasing import releases, wait_body, wait_spec
+from .releasing import call_spec, call_wait, releases, wait_body, wait_spec, wakes
 from .rows import Rows
 from .site import Site
 from .transmission import answering
@@ -141,7 +141,8 @@ class Glue(Site):
             names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
             names.add(ref(root, UNIT))
-        if any(releases(self, port) for port in component.inputs()):
+        woken = any(releases(self, port) for port in component.inputs())
+        if woken or any(wakes(self, one) for one in self._served()):
             names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
         elif queued or self._served():
             names.add(ref("Ravenchart.Queues"))
@@ -197,6 +198,7 @@ class Glue(Site):
                 )
             )
         items += self._command_specs()
+        items += [spec for one in self._served() for spec in call_spec(self, one)]
         items += fill_specs(self)
         if self._slots():
             items.insert(0, UseType(ELEMENT_ID))
@@ -276,6 +278,7 @@ class Glue(Site):
         if component.events:
             items.append(self._offer_body())
         items += self._command_bodies()
+        items += [body for one in self._served() for body in call_wait(self, one)]
         items += fill_bodies(self)
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}

@@ -60,6 +60,7 @@ from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
 from .instants import RELEASE, link_to, sends_visibly, visible_of
+from .releasing import wakes
 from .site import Site
 from .transmission import flow_control, transmits
 
@@ -382,7 +383,8 @@ class Rows(Site):
         body: tuple[Stmt, ...] = (*before, work, *after)
         if provided is not None:
             loop = served(self.system, self.instance, provided, body)
-            body = (Loop(_times(provided.depth), loop),)
+            many = 1 if wakes(self, provided) else provided.depth  # one call in a release
+            body = (Loop(_times(many), loop),)
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = do(ref(f"{region_name}_Board", "Read"), ref(f"{region_name}_Now"))

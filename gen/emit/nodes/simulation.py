@@ -69,9 +69,7 @@ Stimulus = tuple[str, str, Type | None]
 def simulated(system: System) -> System:
     """The part of a system that can be simulated: no bus, no trace, all on one node and core."""
     system = on_one_core(on_one_node(system))
-    processors = tuple(
-        p for p in system.processors if p.released_by is None or p.released_by_port is not None
-    )
+    processors = tuple(p for p in system.processors if not isinstance(p.released_by, str))
     nodes = tuple(replace(n, trace_depth=0, probe=None, supervision=None) for n in system.nodes)
     return replace(system, nodes=nodes, buses=(), messages=(), processors=processors)
 
@@ -194,7 +192,7 @@ def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
         return
     body: list[Stmt] = []
     for number_, processor in enumerate(woken, 1):
-        end, earliest = processor.released_by_port, Indexed("Earliest", plain(number_))
+        end, earliest = processor.released_by_value, Indexed("Earliest", plain(number_))
         assert end is not None
         now = ref("Ravenchart.Steps.Now")
         due = OperatorChain(">=", (ref("Last"), number(number_)))
