@@ -18,7 +18,7 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Binding, Device, Provided, Remote, Server
 from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Connection, End, Instance, Requests
-from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
+from ravenchart.gen.model.system import UNFIT_PORT, Processor, Slot, System, Work
 from ravenchart.gen.origins import Origin
 from ravenchart.gen.resolve.system import Resolved
 
@@ -71,14 +71,20 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
                 if not slot.of_bus and slot.owner != port.instance:
                     hint += f"; the table of {processor.name} has rows of {port.instance} only"
                 yield error(TABLE, slot.origin, message, hint=hint)
-            elif slot.timing.period != processor.period:
-                message = (
-                    f"the period of {slot.element} is {shown(slot.timing.period)}, but "
-                    f"{processor.name} runs it in each of its releases, which are "
-                    f"{shown(processor.period)} apart at least"
-                )
-                hint = f"give {slot.element} and {processor.name} the same `period`"
-                yield error(TABLE, slot.origin, message, hint=hint)
+            else:
+                yield from _other_period(processor, slot)
+
+
+def _other_period(processor: Processor, slot: Slot) -> Iterator[Diagnostic]:
+    """An error for a row that is not due in every release."""
+    if slot.timing.period != processor.period:
+        message = (
+            f"the period of {slot.element} is {shown(slot.timing.period)}, but "
+            f"{processor.name} runs it in each of its releases, which are "
+            f"{shown(processor.period)} apart at least"
+        )
+        hint = f"give {slot.element} and {processor.name} the same `period`"
+        yield error(TABLE, slot.origin, message, hint=hint)
 
 
 def _is_queued(instance: Instance, end: End) -> bool:
@@ -226,14 +232,8 @@ def _serves(processor: Processor, instance: Instance, server: str) -> Iterator[D
             message += slot.element
             hint = "move it to a periodic processor"
             yield error(TABLE, slot.origin, message, hint=hint)
-        elif slot.timing.period != processor.period:
-            message = (
-                f"the period of {slot.element} is {shown(slot.timing.period)}, but "
-                f"{processor.name} runs it in each of its releases, which are "
-                f"{shown(processor.period)} apart at least"
-            )
-            hint = f"give {slot.element} and {processor.name} the same `period`"
-            yield error(TABLE, slot.origin, message, hint=hint)
+        else:
+            yield from _other_period(processor, slot)
 
 
 def _of_callers(system: System, instance: Instance, provided: Provided) -> Iterator[Problem]:

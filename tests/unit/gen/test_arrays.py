@@ -359,7 +359,10 @@ def test_the_model_of_the_page_is_valid_and_in_time() -> None:
 
 
 def test_a_model_without_arrays_is_read_as_before() -> None:
-    for path in sorted((ROOT / "examples").glob("*/model.yaml")):
+    models = sorted((ROOT / "examples").glob("*/model.yaml"))
+    without = [path for path in models if "count:" not in path.read_text(encoding="utf-8")]
+    assert len(without) > 5
+    for path in without:
         content = read_model(path)
         assert all(a is b for a, b in zip(content.forms, content.written, strict=True)), path
 
