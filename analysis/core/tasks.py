@@ -100,6 +100,11 @@ class Task:
         return self.wcet + sum(row.wcet for row in self.rows)
 
     @property
+    def longest_wcet(self) -> int:
+        """The longest job, of the rows that its release executes."""
+        return self.wcet + max((sum(row.wcet for row in rows) for rows in self.frames), default=0)
+
+    @property
     def frame_count(self) -> int:
         """Releases after which the table repeats; 1 where that is above `FRAME_LIMIT`."""
         count = math.lcm(*(row.every for row in self.rows))

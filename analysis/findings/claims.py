@@ -94,10 +94,12 @@ def uncertified(analysis: Analysis) -> Iterator[Diagnostic]:
     """An error for each deadline or limit that is met only by offsets no certificate shows."""
     if analysis.for_all_offsets is analysis:
         return
+    phased = any(is_phased(task) for task in analysis.network.tasks)
     for one in each_finding(analysis.for_all_offsets, but=by_offsets(analysis)):
         if one.is_error:
-            text = f"without offsets, {one.message}; the certificate cannot show offsets here yet"
-            hint = "choose times or priorities that do without offsets"
+            what = "offsets and phases" if phased else "offsets"
+            text = f"without {what}, {one.message}; the certificate cannot show {what} here yet"
+            hint = f"choose times or priorities that do without {what}"
             yield error(UNREADY, one.origin, text, notes=one.notes, hint=hint)
 
 

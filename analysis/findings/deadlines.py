@@ -129,14 +129,20 @@ def _of_task(response: Response, analysis: Analysis) -> Diagnostic:
             hint="shorten worst-case execution times, or lengthen periods",
         )
     bound, deadline = rounded.against(response.bound, task.deadline)
+    hint = "lengthen its period, or move an activity to a processor with a longer period"
+    if task.driver_of:
+        hint = "lengthen the period of the message, or shorten what preempts the driver"
+    own = next((p for p in analysis.system.processors if p.name == task.element), None)
+    if own is not None and own.logical == task.deadline < own.period:
+        hint = "lengthen its `logical_execution_time`, or move an activity to another processor"
+    elif own is not None and own.cyclic:
+        hint = "give phases that keep long rows apart, or move a row to another processor"
     return error(
         MISSED,
         task.origin,
         f"{task.element} misses its deadline: R = {bound} > D = {deadline}",
         notes=_task_notes(response, analysis),
-        hint="lengthen the period of the message, or shorten what preempts the driver"
-        if task.driver_of
-        else "lengthen its period, or move an activity to a processor with a longer period",
+        hint=hint,
     )
 
 

@@ -118,7 +118,7 @@ def _task(response: Response, found: Holistic, detailed: bool) -> Json:
         "core": task.core,
         "priority": task.priority,
         "period": task.period,
-        "wcet": task.plain_wcet,
+        "wcet": task.longest_wcet,
         "jitter": response.jitter,
         **_common(task.name, response, found),
         "blocker": response.blocking.user if response.blocking else None,

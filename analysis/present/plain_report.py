@@ -69,7 +69,7 @@ def render_plain(
 def _task_row(result: PlainResult, name: str) -> dict[str, object]:
     """The row of a task; C is the WCET of all its rows together."""
     row = row_of(result.system.network, result.found, name)
-    return row | {"longest": row["item"].plain_wcet}
+    return row | {"longest": row["item"].longest_wcet}
 
 
 def _tightness(slack: int | None) -> tuple[bool, int]:

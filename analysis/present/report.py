@@ -38,6 +38,7 @@ from .sentences import (
     binding_lines,
     families,
     growth_line,
+    instant_lines,
     offset_lines,
     stream_lines,
     verdict_line,
@@ -230,6 +231,7 @@ def _context(analysis: Analysis, run: RunReport | None) -> dict[str, Any]:
         ][:SHOWN_CHAINS],
         "chains_left": max(0, len(analysis.chains) - SHOWN_CHAINS),
         "by_offsets": offset_lines(analysis.responses),
+        "instants_given": instant_lines(system),
         "factors": factors,
         "room": Markup(plots.figure_svg(plots.room(factors, _whole(analysis))))
         if factors

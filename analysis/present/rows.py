@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 from markupsafe import Markup
 
-from ravenchart.analysis.core.chains import HopKind, Latency
+from ravenchart.analysis.core.chains import ChainStep, HopKind, Latency
 from ravenchart.analysis.core.holistic import Holistic
 from ravenchart.analysis.core.responses import Response
 from ravenchart.analysis.system.critical import frame_schedule, schedule
@@ -31,9 +31,13 @@ HOPS = {
 def hop_cells(found: Latency) -> list[tuple[str, str, int | None, int | None, int | None]]:
     """Each hop: its name, how data reach it, its wait, its response and its renewal."""
     return [
-        (hop.step.name, HOPS[hop.step.hop], hop.wait, hop.response, hop.renewal)
-        for hop in found.hops
+        (hop.step.name, _how(hop.step), hop.wait, hop.response, hop.renewal) for hop in found.hops
     ]
+
+
+def _how(step: ChainStep) -> str:
+    """How data reach a step."""
+    return "samples, at known instants" if step.lasting else HOPS[step.hop]
 
 
 def chain_picture(found: Latency) -> Markup | None:

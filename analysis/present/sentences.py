@@ -17,6 +17,9 @@ from ravenchart.analysis.system.critical import GIVEN
 from ravenchart.analysis.system.stream import StreamResponse
 from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
+from ravenchart.gen.language.quantities import shown
+from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.system import System
 
 WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
 """The verdict of a row in a word."""
@@ -138,6 +141,23 @@ def response_parts(
         source = f"the jitter inherited from {releaser}" if releaser else "its late release"
         parts.insert(0, TextPart("jitter", source, "", jitter))
     return tuple(part for part in parts if part.time)
+
+
+def instant_lines(system: System) -> tuple[str, ...]:
+    """Logical execution times and chosen or given phases, each in a sentence."""
+    logical = [f"{p.name} {shown(p.logical)}" for p in system.processors if p.logical is not None]
+    phases = [
+        f"{slot.element} {shown(Ns(slot.phase * processor.period))}"
+        for processor in system.processors
+        for slot in processor.slots
+        if slot.phase
+    ]
+    found = []
+    if logical:
+        found.append(f"Logical execution times: {', '.join(logical)}.")
+    if phases:
+        found.append(f"Phases: {', '.join(phases)}. All other rows run from release 0 on.")
+    return tuple(found)
 
 
 def offset_lines(found: Iterable[Response | FrameResponse]) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.rounded import TimeUnit
 
 from .bars import stream_row
-from .sentences import WORDS, load_lines, offset_lines, stream_lines, verdict_line
+from .sentences import WORDS, instant_lines, load_lines, offset_lines, stream_lines, verdict_line
 
 LEGEND = (
     "Times in {}, rounded to the safe side: T period, D deadline, C execution or\n"
@@ -47,7 +47,11 @@ def show(analysis: Analysis, console: Console | None = None) -> None:
     if analysis.limited:
         out.print(_chains(analysis, unit))
     out.print(Text(LEGEND.format(unit.name), style="dim"))
-    for line in (*offset_lines(analysis.responses), *stream_lines(analysis)):
+    for line in (
+        *offset_lines(analysis.responses),
+        *instant_lines(analysis.system),
+        *stream_lines(analysis),
+    ):
         out.print(Text(line))
     for line in advice.lines(advice.of_model(analysis)):
         out.print(Text(line))

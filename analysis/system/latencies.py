@@ -35,6 +35,7 @@ from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.logical import logical_links, saved_wait, timed_row
+from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
@@ -239,6 +240,13 @@ class Latencies:
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
+        hider = (
+            hidden_by(self.system, before, place)
+            if port is not None and before in self.rows
+            else None
+        )
+        if hider is not None:
+            made = replace(made, waits=f"{hider} may hide the values of {before} in {place}")
         processor, at = self.rows[row]
         slot = processor.slots[at]
         if processor.released_by_value is not None and made.hop is not HopKind.RELEASED:

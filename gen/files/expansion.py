@@ -227,6 +227,8 @@ def _lists(given: Map, names: ArrayNames) -> Map:
     for key, value in given.items():
         if key in LISTED and isinstance(value, Seq):
             made.put(key, _items(value, names))
+        elif key == "phases" and isinstance(value, Map):
+            made.put(key, _keys(value, names))
         elif isinstance(value, Map) and key != "signals":
             made.put(key, _lists(value, names))
         elif key == "to" and isinstance(value, str) and ALL in value:
@@ -239,6 +241,18 @@ def _lists(given: Map, names: ArrayNames) -> Map:
             hint = "name one element: write its number in place of the star"
             names.error("RV-0306", given.values_at[key].origin, message, hint)
             made.lose(key)
+    return made.tree
+
+
+def _keys(given: Map, names: ArrayNames) -> Map:
+    """A mapping whose keys are references, with an entry for each element."""
+    made = TreeCopy(given)
+    for key, value in given.items():
+        found = names.names(key, given.keys_at[key], names.top)
+        if found is None:
+            made.lose(key)
+        elif found.has_star:
+            made.split(key, dict.fromkeys(found.names, value))
     return made.tree
 
 

@@ -225,7 +225,7 @@ class ProcessorForm(Element):
         "all rows, and phases that are not given are chosen so that no release has much more work "
         "than another one."
     )
-    phases: dict[PathReference, Span] | None = optional(
+    phases: dict[StarredReference, Span] | None = optional(
         "Of rows with a longer period than the processor's: the time of the first execution, after "
         "the first release of the processor. A multiple of its period, below that of the row."
     )

@@ -38,7 +38,8 @@ class LogicalLink:
     """Values that the mailbox keeps.
 
     The handler runs at most D after its release r. By then the sender may have put in values that
-    become visible after r: those of releases from r - L on, and before r + D. One more is visible.
+    become visible after r: those of releases from r - L on, and before r + D. Each row has one in
+    each of its periods, all rows together one for a release. One more is visible.
     """
 
     @property
@@ -101,7 +102,7 @@ def _links(system: System) -> Iterator[LogicalLink]:
         receiver = system.processor_of(f"{connection.target.instance}.ports")
         if receiver.name == logical.name or receiver.released_by is not None:
             continue
-        period = math.gcd(*(period_of(processor, slot) for processor, slot in places))
         ahead = logical.logical + receiver.deadline
-        depth = 1 + -(-ahead // period)
+        times = sum(-(-ahead // period_of(processor, slot)) for processor, slot in places)
+        depth = 1 + min(times, -(-ahead // logical.period))
         yield LogicalLink(connection, logical, receiver, logical.logical, rows, depth)

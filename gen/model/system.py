@@ -63,8 +63,8 @@ class Slot:
     phase: int
     after: Ns = NO_TIME
     """The time of its first execution, after the first release of the processor."""
-    is_placed: bool = False
-    """Whether the model gives that time."""
+    placed_at: Origin | None = None
+    """Where the model gives that time; None where it does not."""
 
     @property
     def element(self) -> str:

@@ -180,7 +180,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         if form.offset and form.has("offset"):
             message = "`offset` has no meaning for a sporadic processor"
             findings.error("RV-0210", form.at_key("offset"), message, hint="remove it")
-        for key in ("logical_execution_time", "schedule"):
+        for key in ("logical_execution_time", "schedule", "phases"):
             if form.has(key):
                 message = f"{name} is sporadic: it has no `{key}`"
                 hint = "only releases by time are known beforehand: remove it"
@@ -202,7 +202,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         )
     )
     sound = tuple(slot for slot in slots if slot is not None)
-    sound = _phased(name, form, sound, findings)
+    sound = _phased(name, form, sound, site)
     whole = len(sound) == len(slots) and not form.list_damaged("activities")
     own = [slot for slot in sound if slot.work is not Work.BUS_RECEIVE]
     cyclic = form.schedule is not None and form.released_by is None
@@ -242,24 +242,34 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
 
 
 def _phased(
-    name: str, form: ProcessorForm, slots: tuple[Slot, ...], findings: Findings
+    name: str, form: ProcessorForm, slots: tuple[Slot, ...], site: DeploymentNames
 ) -> tuple[Slot, ...]:
     """The rows of a table with the phases that the processor gives."""
-    given: dict[str, Ns] = {}
-    rows = {slot.element.lower(): slot for slot in slots}
+    if form.released_by is not None:
+        return slots
+    given: dict[str, tuple[Ns, Origin]] = {}
+    rows = {slot.element for slot in slots}
     for text, phase in (form.phases or {}).items():
         at = form.entry_at("phases", text)
-        slot = rows.get(text.lower())
-        if slot is None or slot.of_bus or form.released_by is not None:
-            message = f"`phases` of {name} names {text}, which is no periodic row of its table"
-            if not form.list_damaged("activities") and not form.lost("released_by"):
-                names = [row.element for row in slots if not row.of_bus]
-                hint = meant(text, names) or "name a row of its table as `instance.row`"
-                findings.error("RV-0305", at, message, hint=hint)
+        named_row = _slot(text, at, form, site)
+        if named_row is None:
             continue
-        given[slot.element] = Ns(phase)
+        element = named_row.element
+        if element in given:
+            message = f"`phases` of {name} names {element} twice"
+            notes = [(given[element][1], "the first is here")]
+            site.findings.error("RV-0303", at, message, notes=notes, hint="remove one of them")
+        elif element not in rows:
+            message = f"`phases` of {name} names {element}, which is no row of its table"
+            if not form.list_damaged("activities"):
+                hint = meant(text, rows) or "name a row of its table as `instance.row`"
+                site.findings.error("RV-0305", at, message, hint=hint)
+        else:
+            given[element] = Ns(phase), at
     return tuple(
-        replace(slot, after=given[slot.element], is_placed=True) if slot.element in given else slot
+        replace(slot, after=given[slot.element][0], placed_at=given[slot.element][1])
+        if slot.element in given
+        else slot
         for slot in slots
     )
 

@@ -72,7 +72,10 @@ def _of_executive(processor: Processor, slots: Sequence[Slot]) -> Iterator[Diagn
             f"the table of {processor.name} repeats after {major // processor.period} releases; "
             f"the limit is {MOST_RELEASES}"
         )
+        whole = Ns(math.gcd(*(slot.timing.period for slot in slots)))
         hint = "choose periods with a shorter common multiple"
+        if major // whole <= MOST_RELEASES:
+            hint = f"choose a longer `period`: {shown(whole)} divides all periods"
         yield error("RV-0704", processor.origin, message, hint=hint)
 
 
@@ -92,10 +95,17 @@ def offsets_are_shorter_than_periods(resolved: Resolved) -> Iterator[Diagnostic]
 def _unfit_phase(processor: Processor, slot: Slot) -> Iterator[Diagnostic]:
     """The first execution of a row is in a release of its first period."""
     base, period, phase = processor.period, slot.timing.period, slot.after
-    if period % base == 0 and phase and (phase % base or phase >= period):
-        message = (
-            f"the phase of {slot.element}, {shown(phase)}, is no multiple of {shown(base)}, the "
-            f"period of {processor.name}, below {shown(period)}, its own"
-        )
-        below = min(phase // base * base, period - base)
-        yield error("RV-0708", slot.origin, message, hint=f"{shown(below)} would fit")
+    if slot.placed_at is None or period % base:
+        return
+    if phase >= period:
+        message = f"the phase of {slot.element}, {shown(phase)}, is not below {shown(period)}, "
+        message += "its period"
+    elif phase % base:
+        message = f"the phase of {slot.element}, {shown(phase)}, is no multiple of {shown(base)}, "
+        message += f"the period of {processor.name}"
+    else:
+        return
+    below = min(phase // base * base, period - base)
+    hint = f"{shown(below)} would fit" if below else "remove it: the row runs in every release"
+    hint = hint if below or period == base else f"{shown(base)} would fit, or none"
+    yield error("RV-0708", slot.placed_at, message, hint=hint)

@@ -109,7 +109,7 @@ class Judge:
 
 def _stays(processor: Processor) -> bool:
     """Whether a processor stays as it is: other tables would change when values are visible."""
-    phased = processor.cyclic or any(slot.after for slot in processor.slots)
+    phased = processor.cyclic or any(slot.placed_at for slot in processor.slots)
     return processor.released_by is not None or processor.logical is not None or phased
 
 
@@ -331,7 +331,7 @@ def tables(proposal: Proposal) -> tuple[WantedTable, ...]:
             tuple(slot.element for slot in one.slots),
             dict(_reactions(one)),
             one.logical,
-            {slot.element: slot.after for slot in one.slots if slot.is_placed},
+            {slot.element: slot.after for slot in one.slots if slot.placed_at},
             one.cyclic,
         )
         for one in _written(proposal.system)

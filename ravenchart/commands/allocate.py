@@ -53,8 +53,8 @@ def show(proposal: Proposal, out: Console | None = None) -> None:
             add(f"  {slot.element}", slot.timing, "", bounds.get(slot.element), "")
     out.print(table)
     out.print(f"Times in {unit.name}, rounded to the safe side. Priorities are by deadline.")
-    out.print("Drivers, the host probe, sporadic processors, and those with phases or a logical ")
-    out.print("execution time stay as they are.")
+    out.print("Drivers, the host probe, sporadic processors, cyclic executives, and processors ")
+    out.print("with phases or a logical execution time stay as they are.")
     if not analysis.schedulable:
         out.print("No tables were found that keep every deadline and limit, chains included.")
     out.print("`--yaml` prints `processors:` to put into the model.")

@@ -207,7 +207,7 @@ def _table(result: PlainResult) -> Table:
     for name in names[:SHOWN]:
         response = found.responses[name]
         item = items[name]
-        longest = item.plain_wcet if isinstance(item, Task) else item.transmission_time
+        longest = item.longest_wcet if isinstance(item, Task) else item.transmission_time
         needed = found.from_event(name)
         bound, deadline = unit.against(needed, item.deadline)
         table.add_row(

@@ -68,6 +68,9 @@ def moved(places: ModelPlaces, row: str, to: str, place: int) -> dict[str, Docum
     them gets an item of its own.
     """
     files = _Files(dict(places.documents))
+    home = places.row_at(row)
+    if home is not None and home[0].name.lower() != to.lower():
+        files.change(home[0].name, partial(_without_phase, row=row))
     item = _taken(files, row, stays=edits.is_flow(files.processor(to).mapping, "activities"))
     number = _item_at(files, to, place)
     files.change(
@@ -201,6 +204,18 @@ def _without_empty(files: _Files, kept: Sequence[str]) -> None:
         if entry.name in kept or files.places.table(entry):
             continue
         files.change(entry.name, _without)
+
+
+def _without_phase(document: Document, entry: NamedEntry, row: str) -> Document:
+    """Without the phase of a row, which is one in the table that the row leaves."""
+    phases = entry.mapping.mapping("phases")
+    given = [] if phases is None else [name.value for name, _ in phases.entries]
+    own = next((name for name in given if name.lower() == row.lower()), None)
+    if phases is None or own is None:
+        return document
+    if len(given) == 1:
+        return edits.without_entry(document, entry.mapping, "phases")
+    return edits.without_entry(document, phases, own)
 
 
 def _without(document: Document, entry: NamedEntry) -> Document:

@@ -37,6 +37,8 @@ class Row:
     deadline: int
     divisor: int = 1
     phase: int = 0
+    is_open: bool = False
+    """The generator chose its phase; the certificate says which."""
 
 
 @dataclass(slots=True)
@@ -58,8 +60,6 @@ class Task:
     core: int = 1
     lasting: int = 0
     """How long after its releases what it sends is visible; 0: when it is sent."""
-    cyclic: bool = False
-    """The generator chose the phases of its rows; the certificate says which."""
 
     @property
     def place(self) -> tuple[str, int]:
@@ -364,7 +364,9 @@ class Deployment:
         phases = form.map("phases")
         for row in rows:
             row.divisor = row.period // period
-            row.phase = phases.time(phases.name(row.element) or "", 0) // period
+            given = phases.name(row.element)
+            row.phase = phases.time(given or "", 0) // period
+            row.is_open = cyclic and given is None
         by = form.text("released_by") or ""
         return Task(
             element=f"{name}_{node}" if several else name,
@@ -379,7 +381,6 @@ class Deployment:
             port=self._releasing(by) if "." in by else None,
             core=form.number("core", 1),
             lasting=lasting,
-            cyclic=cyclic,
         )
 
     def _releasing(self, end: str) -> str:

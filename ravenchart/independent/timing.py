@@ -29,6 +29,7 @@ LEFT = (
     (r"chain_.*", "chains from end to end"),
     (r".*_done", "rows on the way of a chain"),
     (r".*_(at|w_at|needs_at|since)_\d+|.*_(cycle|reach)", "instants of offsets"),
+    (r".*_depth", "depths of mailboxes with logical execution times"),
     (r".*_(stale|stale_needs|max_age|looks)", "staleness of protected ports"),
     (r".*_(data_bits|few|residual|residual_needs|residual_per_hour)", "residual errors"),
 )
@@ -161,7 +162,7 @@ class Timing:
             if not task.sporadic:
                 timed = own if all(one.divisor == 1 for one in task.rows) else name
                 self.same("rows", f"{timed}_Divisor", row.divisor, f"the divisor {what}")
-                if task.cyclic:
+                if row.is_open:
                     row.phase = self.value(f"{name}_Phase")
                     late, least = row.phase < row.divisor, min(row.phase, row.divisor - 1)
                     self.same("rows", f"{timed}_Phase", least, f"the phase {what}")

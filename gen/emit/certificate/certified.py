@@ -11,15 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.declarations import Decl
-from ravenchart.gen.emit.ada.expressions import Expr, Indexed, Selected, both, equal
+from ravenchart.gen.emit.ada.expressions import Expr, Indexed, Selected, both, equal, number
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
 from ravenchart.gen.emit.ada.naming import constant_name as name_of
 from ravenchart.gen.emit.ada.naming import row_name
 from ravenchart.gen.emit.ada.statements import Pragma
-from ravenchart.gen.model.system import Processor, Slot
+from ravenchart.gen.model.system import Processor, Slot, System
 
-from .terms import differs
+from .terms import differs, plus, times
 
 CERTIFICATE = "Timing_Certificate"
 
@@ -38,6 +39,19 @@ def timed_by(processor: str, slots: Sequence[Slot], slot: Slot) -> str:
     """The element whose divisor and phase a row has: its processor where every row always runs."""
     always = all((one.divisor, one.phase) == (1, 0) for one in slots)
     return processor if always else slot.element
+
+
+def offset_of(system: System, processor: str) -> Expr:
+    """The offset of a processor, by its name below ``Timing_Certificate`` where it is stated."""
+    shifted = any(has_offset(system, task) for task in system.tasks if task.element == processor)
+    return ref(f"{name_of(processor)}_O") if shifted else number(0)
+
+
+def first_release(system: System, processor: Processor, slot: Slot) -> Expr:
+    """The release of the first execution of a row, in the names of the certificate."""
+    timed = timed_by(processor.name, processor.slots, slot)
+    late = times(ref(f"{name_of(timed)}_Phase"), ref(f"{name_of(processor.name)}_T"))
+    return plus(offset_of(system, processor.name), late)
 
 
 def agrees(given: Named, certified: Expr, element: str, what: str) -> Decl:

@@ -19,6 +19,7 @@ from ravenchart.gen.model.claims import ChainClaim
 from ravenchart.gen.model.logical import first_of, period_of, timed_row
 from ravenchart.gen.model.system import Chain, Processor, System
 
+from .certified import first_release
 from .hops import ClaimedHop, hops_of
 from .terms import assured, exact, name_of, named_number, none_of, plus, refuse, stated, times
 
@@ -128,12 +129,12 @@ def _grid(system: System, own: str, hops: tuple[ClaimedHop, ClaimedHop], chain: 
     visible = f"{name_of(hop.link.sender.name)}_Let"
     grid = math.gcd(period_of(*one), period_of(*other))
     late = (first_of(*other) - first_of(*one) - hop.link.lasting) % grid
-    shown = number(first_of(*one)), ref(visible), lag
+    shown = first_release(system, *one), ref(visible), lag
     apart = first_of(*one) + hop.link.lasting + late - first_of(*other)
     rounds = times(number(abs(apart) // grid), step)
-    sides = plus(*shown), plus(number(first_of(*other)), rounds)
+    sides = plus(*shown), plus(first_release(system, *other), rounds)
     if apart < 0:
-        sides = plus(*shown, rounds), number(first_of(*other))
+        sides = plus(*shown, rounds), first_release(system, *other)
     wrong: list[Expr] = [OperatorChain(">=", (lag, step)), OperatorChain("/=", sides)]
     for period in (_period(system, before), _period(system, hop)):
         whole = times(OperatorChain("/", (period, step)), step)

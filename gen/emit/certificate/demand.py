@@ -46,20 +46,19 @@ def has_phases(task: Task) -> bool:
     return any(slot.phase for slot in task.slots)
 
 
-def longest_of(task: Task, place: int) -> Expr:
-    """The longest work of a release until the row at a place, from 1, is done; the last: of all.
+def longest_of(task: Task, place: int | None = None) -> Expr:
+    """The longest work of a release; until the row at a place, from 1, is done, where one is given.
 
-    That row is executed, where it is not the last, and of the rows before it those that a release
-    executes as well.
+    Then that row is executed, and of the rows before it those that the release executes as well.
     """
-    slots, last = task.slots[:place], len(task.slots)
+    slots = task.slots if place is None else task.slots[:place]
     if not has_phases(task):
         return plus(switches(task), *(ref(f"{name_of(slot.element)}_Wcet") for slot in slots))
     releases = range(math.lcm(*(slot.divisor for slot in task.slots)))
     found = dict.fromkeys(
         tuple(slot.element for slot in slots if k % slot.divisor == slot.phase)
         for k in releases
-        if place == last or k % slots[-1].divisor == slots[-1].phase
+        if place is None or k % slots[-1].divisor == slots[-1].phase
     )
     whole = [one for one in found if not any(set(one) < set(other) for other in found)]
     sums = [plus(*(ref(f"{name_of(row)}_Wcet") for row in one)) for one in whole]

@@ -18,6 +18,7 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.instances import End, Requests
 from ravenchart.gen.model.logical import LogicalLink, logical_links
+from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
 
@@ -152,13 +153,16 @@ def _handler(system: System, end: End, hops: list[ClaimedHop]) -> ClaimedHop:
         return ClaimedHop(element, "row", "woken", max(many))
     if queued and hops and sum(many) > 1:
         return ClaimedHop(element, "row", "queued", max(many), open=len(many) > 1)
+    lost = bool(hops) and hops[-1].kind == "row" and hidden_by(system, hops[-1].element, end)
     if hops and _follows(system, hops[-1], element):
-        return ClaimedHop(element, "row", "released")
+        return ClaimedHop(element, "row", "released", open=bool(lost))
     link = None
     if hops:
         links = (one for one in logical_links(system) if one.connection.target == end)
         link = next((one for one in links if hops[-1].element in one.rows), None)
-    return ClaimedHop(element, "row", "queued" if queued and hops else "sampled", link=link)
+    return ClaimedHop(
+        element, "row", "queued" if queued and hops else "sampled", open=bool(lost), link=link
+    )
 
 
 def _follows(system: System, before: ClaimedHop, element: str) -> bool:

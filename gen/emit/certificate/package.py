@@ -49,6 +49,7 @@ from .chains import chain_claims
 from .demand import demand, has_phases, longest_of, sums, work_of_jobs
 from .hops import hops_of
 from .interference import UNIT, task_functions
+from .mailboxes import mailbox_depths
 from .offsets import offset_claims
 from .protection import age_limited_ports, protection_claims
 from .tables import driver_levels, order, table_terms
@@ -124,6 +125,7 @@ def emit_certificate(system: System, claims: Claims, header: str) -> Unit:
             items += order(system, node, core)
     for bus in system.buses:
         items += bus_terms(system, bus)
+    items += mailbox_depths(system)
     hops = {hop for chain in system.chains for hop in hops_of(system, chain)}
     rows = {hop.element for hop in hops if hop.kind == "row"}
     handed = {hop.element for hop in hops if hop.kind == "handed"}
@@ -236,7 +238,7 @@ def _terms(system: System, task: Task) -> list[Decl]:
     items.append(named_number(f"{own}_J", _jitter(system, task)))
     items += [named_number(name, value) for name, value in sums(task).items()]
     if has_phases(task):
-        items.append(named_number(f"{own}_Longest", longest_of(task, len(task.slots))))
+        items.append(named_number(f"{own}_Longest", longest_of(task)))
     items.append(named_number(f"{own}_B", blocking))
     return items
 

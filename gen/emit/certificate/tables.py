@@ -20,6 +20,7 @@ from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System, Task
 
 from .certified import driver_element, timed_by
+from .demand import has_phases
 from .interference import by_priority
 from .terms import name_of, named_number, none_of, stated
 
@@ -64,6 +65,7 @@ def table_terms(task: Task) -> list[Decl]:
         items += [stated(divisor, slot.divisor), stated(phase, slot.phase)]
         wrong.append(OperatorChain("/=", (divisor, number(slot.divisor))))
         late: Expr = OperatorChain(">=", (phase, divisor))
-        wrong.append(OperatorChain("/=", (phase, number(0))) if slot.divisor == 1 else late)
+        known = slot.divisor == 1 or has_phases(task)  # the longest release is that of these phases
+        wrong.append(OperatorChain("/=", (phase, number(slot.phase))) if known else late)
     problem = "must keep divisors and phases of its rows"
     return items + none_of(wrong, task.element, problem)

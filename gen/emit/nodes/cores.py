@@ -65,6 +65,7 @@ from ravenchart.gen.emit.ada.statements import (
     Stmt,
     do,
 )
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact
 from ravenchart.gen.emit.instances.fills import FILL, queued_regions, read_name
 from ravenchart.gen.emit.tables.core_units import at_core
 from ravenchart.gen.emit.tables.port_calls import CROSSINGS, VISIBLE
@@ -92,8 +93,8 @@ SUM = "Ravenchart.Sum"
 # --- Values ----------------------------------------------------------------------------
 
 
-def emit_crossings(system: System, header: str) -> list[Unit]:
-    """The mailboxes of ports whose values come from another core, and the calls of senders."""
+def emit_crossings(system: System, header: str, *, certified: bool = True) -> list[Unit]:
+    """The mailboxes of `crossings`, and the calls of senders; ``certified``: by a certificate."""
     found = crossings(system)
     if not found:
         return []
@@ -102,12 +103,14 @@ def emit_crossings(system: System, header: str) -> list[Unit]:
     bodies: list[Decl] = []
     context: set[DottedName] = set()
     for one in found:
-        spec += _mailbox(system, one)
+        spec += _mailbox(system, one, certified)
         (sent,) = at_core([_putting(system, one, header)], system, one.sent_on)
         assert isinstance(sent.item, Package)
         bodies += sent.item.items
         context |= set(sent.withs)
     generics = {_generic(one) for one in found}
+    if certified and any(one.logical is not None for one in found):
+        generics.add(ref(root, CERTIFICATE))
     name = ref(root, CROSSINGS)
     return [
         Unit(header, tuple(sorted(generics)), Package(name, tuple(spec), (SPARK,))),
@@ -115,13 +118,14 @@ def emit_crossings(system: System, header: str) -> list[Unit]:
     ]
 
 
-def _mailbox(system: System, one: Crossing) -> Iterator[Decl]:
+def _mailbox(system: System, one: Crossing, certified: bool) -> Iterator[Decl]:
     own, element = constant_name(one.element), type_name(system, one.port.type)
     args = arguments(Element_Type=element, Null_Element=default_value(system, one.port.type))
     cores = f"from core {one.sent_on} to core {one.taken_on}"
     if one.logical is not None:
         cores = f"visible {shown(one.logical.lasting)} after the release of {one.senders[0]}"
-        args += arguments(Depth=number(one.logical.depth))
+        depth = fact(one.element, "Depth") if certified else number(one.logical.depth)
+        args += arguments(Depth=depth)
     elif one.port.kind is PortKind.QUEUED:
         args += arguments(Capacity=number(one.port.depth))
     yield Comment(f"[{one.element}] {cores}")
@@ -308,8 +312,9 @@ def emit_core_reports(system: System, core: int, header: str) -> tuple[Unit, ...
     here = [i for i in system.instances if core_of(system, i.name) == core]
     queued = [i for i in here if queued_regions(i.component)]
     context |= {ref(root, ada_case(i.name)) for i in queued}
-    withs |= {ref("Ravenchart.Queueing")} if queued or lost else set()
+    withs |= {ref("Ravenchart.Queueing")} if queued else set()
     if lost:
+        context.add(ref("Ravenchart.Queueing"))
         withs |= {QUEUES, *(record.parent for _, _, record in buffers(system))}
         context |= {ref(root, buffer.first) for _, buffer, _ in buffers(system)}
     name = ref(root, report_unit(core))

@@ -107,7 +107,7 @@ def emit_deployment(system: System, header: str) -> tuple[Unit, ...]:
 
 def emit_without_tasks(system: System, header: str) -> tuple[Unit, ...]:
     """The units that instances need of it in a simulation."""
-    crossings = emit_crossings(system, header)
+    crossings = emit_crossings(system, header, certified=False)
     return (_health(system, header), _elements(system, header), *crossings)
 
 

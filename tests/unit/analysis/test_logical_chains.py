@@ -135,3 +135,30 @@ def test_the_mailbox_keeps_what_a_receiver_may_need(seed: int) -> None:
         needed = max(w for w in sent if w + case.lasting <= release)
         most = max(most, sum(w >= needed for w in sent))
     assert most <= link.depth <= most + 1
+
+
+ROWS = """\
+      give: {period: 10 ms, wcet: 20 us, body: [{send: level, with: 1}]}
+      more: {period: 10 ms, wcet: 20 us, body: [{send: level, with: 2}]}
+"""
+
+
+@pytest.mark.parametrize(("phase", "taken", "depth"), [("5 ms", 200, 43), ("0 ms", 200, 43)])
+def test_each_row_that_sends_has_its_values_in_the_mailbox(
+    phase: str, taken: int, depth: int
+) -> None:
+    """L + D = 205 ms: with releases 5 ms apart up to 41 values come meanwhile, by two rows 42."""
+    case = Times(sent=10, taken=taken, first=0, then=0, lasting=5)
+    text = MODEL.format(**{**vars(case), "lasting": "logical_execution_time: 5 ms,"}, sends=ALWAYS)
+    row = "      give: {period: 10 ms, wcet: 20 us, body: [{send: level, with: 1}]}\n"
+    base = "      beat: {period: 5 ms, wcet: 20 us, body: [{set: beats, to: 1}]}\n"
+    data = "    data:\n      beats: {type: Level, initial: 0}\n    activities:\n"
+    assert row in text
+    text = text.replace("    activities:\n" + row, data + base + ROWS, 1)
+    table = f"phases: {{source_1.more: {phase}}}, "
+    text = text.replace("[source_1.give]", "[source_1.beat, source_1.give, source_1.more]")
+    text = text.replace("giving: {", "giving: {" + table)
+    found = loaded(text)
+    assert found.system is not None, found.diagnostics
+    (link,) = logical_links(found.system)
+    assert link.depth == min(depth, 1 + 41)

@@ -143,3 +143,13 @@ def test_phases_of_a_more_urgent_processor_are_not_counted_on_in_a_certificate()
     claimed = claims_of(analysis).items["below"].response
     assert claimed >= bound
     assert claimed == 200_000 + 500_000 + 2 * 1_000_000 + 2 * SWITCHES + BLOCKING
+
+
+def test_phases_of_an_array_are_those_of_its_elements() -> None:
+    text = _model([(5, 100), (10, 100)]).replace("work_1: {component", "work: {count: 2, component")
+    text = text.replace("work_1.a0, work_1.a1", "work_*.a0, work_*.a1")
+    text = text.replace("    stack: 16 KiB\n", "    stack: 16 KiB\n    phases: {work_*.a1: 5 ms}\n")
+    (processor,) = _analysed(text).system.processors
+    assert [(slot.element, slot.phase) for slot in processor.slots] == [
+        ("work_1.a0", 0), ("work_2.a0", 0), ("work_1.a1", 1), ("work_2.a1", 1),
+    ]  # fmt: skip

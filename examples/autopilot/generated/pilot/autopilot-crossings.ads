@@ -2,6 +2,7 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
+with Autopilot.Timing_Certificate;
 with Ravenchart.Crossing_Queues;
 with Ravenchart.Crossing_Samples;
 with Ravenchart.Logical_Samples;
@@ -13,7 +14,7 @@ is
    package Estimator_Turn is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Turn,
       Null_Element => Autopilot.Default_Turn,
-      Depth => 4);
+      Depth => Timing_Certificate.Estimator_Turn_Depth);
 
    procedure Put_Estimator_Turn
      (Item : Autopilot.Turn; Visible : Ravenchart.Nanoseconds);
@@ -39,7 +40,7 @@ is
    package Angle_1_Attitude is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Attitude,
       Null_Element => Autopilot.Default_Attitude,
-      Depth => 3);
+      Depth => Timing_Certificate.Angle_1_Attitude_Depth);
 
    procedure Put_Angle_1_Attitude
      (Item : Autopilot.Attitude; Visible : Ravenchart.Nanoseconds);
@@ -49,7 +50,7 @@ is
    package Angle_2_Attitude is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Attitude,
       Null_Element => Autopilot.Default_Attitude,
-      Depth => 3);
+      Depth => Timing_Certificate.Angle_2_Attitude_Depth);
 
    procedure Put_Angle_2_Attitude
      (Item : Autopilot.Attitude; Visible : Ravenchart.Nanoseconds);
@@ -59,7 +60,7 @@ is
    package Coordinator_Attitude is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Attitude,
       Null_Element => Autopilot.Default_Attitude,
-      Depth => 3);
+      Depth => Timing_Certificate.Coordinator_Attitude_Depth);
 
    procedure Put_Coordinator_Attitude
      (Item : Autopilot.Attitude; Visible : Ravenchart.Nanoseconds);
@@ -70,7 +71,7 @@ is
    package Rate_1_Turn is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Turn,
       Null_Element => Autopilot.Default_Turn,
-      Depth => 4);
+      Depth => Timing_Certificate.Rate_1_Turn_Depth);
 
    procedure Put_Rate_1_Turn
      (Item : Autopilot.Turn; Visible : Ravenchart.Nanoseconds);
@@ -78,7 +79,9 @@ is
 
    --  [rate_1.wanted] visible 10 ms after the release of guiding
    package Rate_1_Wanted is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Rate, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Rate,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Rate_1_Wanted_Depth);
 
    procedure Put_Rate_1_Wanted
      (Item : Autopilot.Rate; Visible : Ravenchart.Nanoseconds);
@@ -88,7 +91,7 @@ is
    package Rate_2_Turn is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Turn,
       Null_Element => Autopilot.Default_Turn,
-      Depth => 4);
+      Depth => Timing_Certificate.Rate_2_Turn_Depth);
 
    procedure Put_Rate_2_Turn
      (Item : Autopilot.Turn; Visible : Ravenchart.Nanoseconds);
@@ -96,7 +99,9 @@ is
 
    --  [rate_2.wanted] visible 10 ms after the release of guiding
    package Rate_2_Wanted is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Rate, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Rate,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Rate_2_Wanted_Depth);
 
    procedure Put_Rate_2_Wanted
      (Item : Autopilot.Rate; Visible : Ravenchart.Nanoseconds);
@@ -106,7 +111,7 @@ is
    package Rate_3_Turn is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Turn,
       Null_Element => Autopilot.Default_Turn,
-      Depth => 4);
+      Depth => Timing_Certificate.Rate_3_Turn_Depth);
 
    procedure Put_Rate_3_Turn
      (Item : Autopilot.Turn; Visible : Ravenchart.Nanoseconds);
@@ -114,7 +119,9 @@ is
 
    --  [rate_3.wanted] visible 10 ms after the release of guiding
    package Rate_3_Wanted is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Rate, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Rate,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Rate_3_Wanted_Depth);
 
    procedure Put_Rate_3_Wanted
      (Item : Autopilot.Rate; Visible : Ravenchart.Nanoseconds);
@@ -122,7 +129,9 @@ is
 
    --  [motor.speed] visible 10 ms after the release of estimating
    package Motor_Speed is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Speed, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Speed,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Motor_Speed_Depth);
 
    procedure Put_Motor_Speed
      (Item : Autopilot.Speed; Visible : Ravenchart.Nanoseconds);
@@ -130,7 +139,9 @@ is
 
    --  [mix.thrust] visible 10 ms after the release of guiding
    package Mix_Thrust is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Thrust, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Thrust,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Mix_Thrust_Depth);
 
    procedure Put_Mix_Thrust
      (Item : Autopilot.Thrust; Visible : Ravenchart.Nanoseconds);
@@ -140,7 +151,7 @@ is
    package Mix_Mode is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Mode,
       Null_Element => Autopilot.Ground,
-      Depth => 2);
+      Depth => Timing_Certificate.Mix_Mode_Depth);
 
    procedure Put_Mix_Mode
      (Item : Autopilot.Mode; Visible : Ravenchart.Nanoseconds);
@@ -167,7 +178,7 @@ is
    package Guide_Attitude is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Attitude,
       Null_Element => Autopilot.Default_Attitude,
-      Depth => 3);
+      Depth => Timing_Certificate.Guide_Attitude_Depth);
 
    procedure Put_Guide_Attitude
      (Item : Autopilot.Attitude; Visible : Ravenchart.Nanoseconds);
@@ -175,7 +186,9 @@ is
 
    --  [guide.height] visible 10 ms after the release of estimating
    package Guide_Height is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Height, Null_Element => 0, Depth => 2);
+     (Element_Type => Autopilot.Height,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Guide_Height_Depth);
 
    procedure Put_Guide_Height
      (Item : Autopilot.Height; Visible : Ravenchart.Nanoseconds);
@@ -183,7 +196,9 @@ is
 
    --  [guide.course] visible 50 ms after the release of finding
    package Guide_Course is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Angle, Null_Element => 0, Depth => 3);
+     (Element_Type => Autopilot.Angle,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Guide_Course_Depth);
 
    procedure Put_Guide_Course
      (Item : Autopilot.Angle; Visible : Ravenchart.Nanoseconds);
@@ -193,7 +208,7 @@ is
    package Way_Attitude is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Attitude,
       Null_Element => Autopilot.Default_Attitude,
-      Depth => 7);
+      Depth => Timing_Certificate.Way_Attitude_Depth);
 
    procedure Put_Way_Attitude
      (Item : Autopilot.Attitude; Visible : Ravenchart.Nanoseconds);
@@ -201,7 +216,9 @@ is
 
    --  [way.speed] visible 10 ms after the release of estimating
    package Way_Speed is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Speed, Null_Element => 0, Depth => 4);
+     (Element_Type => Autopilot.Speed,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Way_Speed_Depth);
 
    procedure Put_Way_Speed
      (Item : Autopilot.Speed; Visible : Ravenchart.Nanoseconds);
@@ -211,7 +228,7 @@ is
    package Link_Mode is new Ravenchart.Logical_Samples
      (Element_Type => Autopilot.Mode,
       Null_Element => Autopilot.Ground,
-      Depth => 7);
+      Depth => Timing_Certificate.Link_Mode_Depth);
 
    procedure Put_Link_Mode
      (Item : Autopilot.Mode; Visible : Ravenchart.Nanoseconds);
@@ -219,7 +236,9 @@ is
 
    --  [link.gyros] visible 5 ms after the release of sensing
    package Link_Gyros is new Ravenchart.Logical_Samples
-     (Element_Type => Autopilot.Count, Null_Element => 0, Depth => 22);
+     (Element_Type => Autopilot.Count,
+      Null_Element => 0,
+      Depth => Timing_Certificate.Link_Gyros_Depth);
 
    procedure Put_Link_Gyros
      (Item : Autopilot.Count; Visible : Ravenchart.Nanoseconds);

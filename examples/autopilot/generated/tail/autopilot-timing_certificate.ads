@@ -454,47 +454,47 @@ is
    Cells_Tell_Phase : constant := 10;
    pragma Compile_Time_Error
      (Selector_Ports_Divisor /= 2
-      or else Selector_Ports_Phase >= Selector_Ports_Divisor
+      or else Selector_Ports_Phase /= 0
       or else Selector_Choose_Divisor /= 2
-      or else Selector_Choose_Phase >= Selector_Choose_Divisor
+      or else Selector_Choose_Phase /= 1
       or else Selector_Paths_Divisor /= 2
-      or else Selector_Paths_Phase >= Selector_Paths_Divisor
+      or else Selector_Paths_Phase /= 1
       or else Servo_1_Ports_Divisor /= 2
-      or else Servo_1_Ports_Phase >= Servo_1_Ports_Divisor
+      or else Servo_1_Ports_Phase /= 0
       or else Servo_2_Ports_Divisor /= 2
-      or else Servo_2_Ports_Phase >= Servo_2_Ports_Divisor
+      or else Servo_2_Ports_Phase /= 1
       or else Servo_3_Ports_Divisor /= 2
-      or else Servo_3_Ports_Phase >= Servo_3_Ports_Divisor
+      or else Servo_3_Ports_Phase /= 0
       or else Servo_4_Ports_Divisor /= 2
-      or else Servo_4_Ports_Phase >= Servo_4_Ports_Divisor
+      or else Servo_4_Ports_Phase /= 1
       or else Servo_1_Listen_Divisor /= 2
-      or else Servo_1_Listen_Phase >= Servo_1_Listen_Divisor
+      or else Servo_1_Listen_Phase /= 0
       or else Servo_2_Listen_Divisor /= 2
-      or else Servo_2_Listen_Phase >= Servo_2_Listen_Divisor
+      or else Servo_2_Listen_Phase /= 1
       or else Servo_3_Listen_Divisor /= 2
-      or else Servo_3_Listen_Phase >= Servo_3_Listen_Divisor
+      or else Servo_3_Listen_Phase /= 0
       or else Servo_4_Listen_Divisor /= 2
-      or else Servo_4_Listen_Phase >= Servo_4_Listen_Divisor
+      or else Servo_4_Listen_Phase /= 1
       or else Servo_1_Drive_Divisor /= 2
-      or else Servo_1_Drive_Phase >= Servo_1_Drive_Divisor
+      or else Servo_1_Drive_Phase /= 0
       or else Servo_2_Drive_Divisor /= 2
-      or else Servo_2_Drive_Phase >= Servo_2_Drive_Divisor
+      or else Servo_2_Drive_Phase /= 1
       or else Servo_3_Drive_Divisor /= 2
-      or else Servo_3_Drive_Phase >= Servo_3_Drive_Divisor
+      or else Servo_3_Drive_Phase /= 0
       or else Servo_4_Drive_Divisor /= 2
-      or else Servo_4_Drive_Phase >= Servo_4_Drive_Divisor
+      or else Servo_4_Drive_Phase /= 1
       or else Servo_1_Tell_Divisor /= 20
-      or else Servo_1_Tell_Phase >= Servo_1_Tell_Divisor
+      or else Servo_1_Tell_Phase /= 0
       or else Servo_2_Tell_Divisor /= 20
-      or else Servo_2_Tell_Phase >= Servo_2_Tell_Divisor
+      or else Servo_2_Tell_Phase /= 2
       or else Servo_3_Tell_Divisor /= 20
-      or else Servo_3_Tell_Phase >= Servo_3_Tell_Divisor
+      or else Servo_3_Tell_Phase /= 4
       or else Servo_4_Tell_Divisor /= 20
-      or else Servo_4_Tell_Phase >= Servo_4_Tell_Divisor
+      or else Servo_4_Tell_Phase /= 6
       or else Cells_Drain_Divisor /= 200
-      or else Cells_Drain_Phase >= Cells_Drain_Divisor
+      or else Cells_Drain_Phase /= 8
       or else Cells_Tell_Divisor /= 200
-      or else Cells_Tell_Phase >= Cells_Tell_Divisor,
+      or else Cells_Tell_Phase /= 10,
       "moving must keep divisors and phases of its rows");
    Moving_J : constant := 0;
    Moving_C : constant := 2 * Tail_Context_Switch;
@@ -1317,6 +1317,182 @@ is
    Backup_Throttle_C : constant :=
      Backup_Time_Of (34 + 8 * Backup_Throttle_Length);
    Backup_Throttle_J : constant := Backup_Driver_Tx_Throttle_R;
+
+   --  [estimator.turn.mailbox] the values that it keeps
+   Estimator_Turn_Depth : constant := 4;
+   pragma Compile_Time_Error
+     (1
+      + (Sensing_Let + Estimating_D + (Sensing_Divisor * Sensing_T - 1))
+        / (Sensing_Divisor * Sensing_T)
+      > Estimator_Turn_Depth,
+      "estimator.turn may lose a value that is visible");
+
+   --  [rate_1.turn.mailbox] the values that it keeps
+   Rate_1_Turn_Depth : constant := 4;
+   pragma Compile_Time_Error
+     (1
+      + (Sensing_Let + Acting_D + (Sensing_Divisor * Sensing_T - 1))
+        / (Sensing_Divisor * Sensing_T)
+      > Rate_1_Turn_Depth, "rate_1.turn may lose a value that is visible");
+
+   --  [rate_2.turn.mailbox] the values that it keeps
+   Rate_2_Turn_Depth : constant := 4;
+   pragma Compile_Time_Error
+     (1
+      + (Sensing_Let + Acting_D + (Sensing_Divisor * Sensing_T - 1))
+        / (Sensing_Divisor * Sensing_T)
+      > Rate_2_Turn_Depth, "rate_2.turn may lose a value that is visible");
+
+   --  [rate_3.turn.mailbox] the values that it keeps
+   Rate_3_Turn_Depth : constant := 4;
+   pragma Compile_Time_Error
+     (1
+      + (Sensing_Let + Acting_D + (Sensing_Divisor * Sensing_T - 1))
+        / (Sensing_Divisor * Sensing_T)
+      > Rate_3_Turn_Depth, "rate_3.turn may lose a value that is visible");
+
+   --  [link.gyros.mailbox] the values that it keeps
+   Link_Gyros_Depth : constant := 22;
+   pragma Compile_Time_Error
+     (1
+      + (Sensing_Let + Telling_D + (Sensing_Divisor * Sensing_T - 1))
+        / (Sensing_Divisor * Sensing_T)
+      > Link_Gyros_Depth, "link.gyros may lose a value that is visible");
+
+   --  [angle_1.attitude.mailbox] the values that it keeps
+   Angle_1_Attitude_Depth : constant := 3;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Estimator_Predict_Divisor * Estimating_T - 1))
+        / (Estimator_Predict_Divisor * Estimating_T)
+      > Angle_1_Attitude_Depth,
+      "angle_1.attitude may lose a value that is visible");
+
+   --  [angle_2.attitude.mailbox] the values that it keeps
+   Angle_2_Attitude_Depth : constant := 3;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Estimator_Predict_Divisor * Estimating_T - 1))
+        / (Estimator_Predict_Divisor * Estimating_T)
+      > Angle_2_Attitude_Depth,
+      "angle_2.attitude may lose a value that is visible");
+
+   --  [coordinator.attitude.mailbox] the values that it keeps
+   Coordinator_Attitude_Depth : constant := 3;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Estimator_Predict_Divisor * Estimating_T - 1))
+        / (Estimator_Predict_Divisor * Estimating_T)
+      > Coordinator_Attitude_Depth,
+      "coordinator.attitude may lose a value that is visible");
+
+   --  [guide.attitude.mailbox] the values that it keeps
+   Guide_Attitude_Depth : constant := 3;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Estimator_Predict_Divisor * Estimating_T - 1))
+        / (Estimator_Predict_Divisor * Estimating_T)
+      > Guide_Attitude_Depth,
+      "guide.attitude may lose a value that is visible");
+
+   --  [way.attitude.mailbox] the values that it keeps
+   Way_Attitude_Depth : constant := 7;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Finding_D
+         + (Estimator_Predict_Divisor * Estimating_T - 1))
+        / (Estimator_Predict_Divisor * Estimating_T)
+      > Way_Attitude_Depth, "way.attitude may lose a value that is visible");
+
+   --  [motor.speed.mailbox] the values that it keeps
+   Motor_Speed_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Air_Data_Filter_Divisor * Estimating_T - 1))
+        / (Air_Data_Filter_Divisor * Estimating_T)
+      > Motor_Speed_Depth, "motor.speed may lose a value that is visible");
+
+   --  [way.speed.mailbox] the values that it keeps
+   Way_Speed_Depth : constant := 4;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Finding_D
+         + (Air_Data_Filter_Divisor * Estimating_T - 1))
+        / (Air_Data_Filter_Divisor * Estimating_T)
+      > Way_Speed_Depth, "way.speed may lose a value that is visible");
+
+   --  [guide.height.mailbox] the values that it keeps
+   Guide_Height_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Estimating_Let + Guiding_D
+         + (Air_Data_Filter_Divisor * Estimating_T - 1))
+        / (Air_Data_Filter_Divisor * Estimating_T)
+      > Guide_Height_Depth, "guide.height may lose a value that is visible");
+
+   --  [mix.mode.mailbox] the values that it keeps
+   Mix_Mode_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Acting_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Mix_Mode_Depth, "mix.mode may lose a value that is visible");
+
+   --  [link.mode.mailbox] the values that it keeps
+   Link_Mode_Depth : constant := 7;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Telling_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Link_Mode_Depth, "link.mode may lose a value that is visible");
+
+   --  [guide.course.mailbox] the values that it keeps
+   Guide_Course_Depth : constant := 3;
+   pragma Compile_Time_Error
+     (1
+      + (Finding_Let + Guiding_D + (Way_Point_Divisor * Finding_T - 1))
+        / (Way_Point_Divisor * Finding_T)
+      > Guide_Course_Depth, "guide.course may lose a value that is visible");
+
+   --  [rate_1.wanted.mailbox] the values that it keeps
+   Rate_1_Wanted_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Acting_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Rate_1_Wanted_Depth,
+      "rate_1.wanted may lose a value that is visible");
+
+   --  [rate_2.wanted.mailbox] the values that it keeps
+   Rate_2_Wanted_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Acting_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Rate_2_Wanted_Depth,
+      "rate_2.wanted may lose a value that is visible");
+
+   --  [rate_3.wanted.mailbox] the values that it keeps
+   Rate_3_Wanted_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Acting_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Rate_3_Wanted_Depth,
+      "rate_3.wanted may lose a value that is visible");
+
+   --  [mix.thrust.mailbox] the values that it keeps
+   Mix_Thrust_Depth : constant := 2;
+   pragma Compile_Time_Error
+     (1
+      + (Guiding_Let + Acting_D + (Guiding_Divisor * Guiding_T - 1))
+        / (Guiding_Divisor * Guiding_T)
+      > Mix_Thrust_Depth, "mix.thrust may lose a value that is visible");
 
    --  [from_flight_nose] each claimed window, and the demand within it
    From_Flight_Nose_W : constant := From_Flight_Nose_R - From_Flight_Nose_J;
@@ -3067,7 +3243,8 @@ is
    Chain_Inner_8_Lag : constant := 0;
    pragma Compile_Time_Error
      (Chain_Inner_8_Lag >= Chain_Inner_8_Grid
-      or else Sensing_Let + Chain_Inner_8_Lag /= Chain_Inner_8_Grid
+      or else Sensing_Phase * Sensing_T + Sensing_Let + Chain_Inner_8_Lag
+        /= Acting_Phase * Acting_T + Chain_Inner_8_Grid
       or else Sensing_T
         /= Sensing_T / Chain_Inner_8_Grid * Chain_Inner_8_Grid
       or else Acting_T /= Acting_T / Chain_Inner_8_Grid * Chain_Inner_8_Grid,
@@ -3095,7 +3272,8 @@ is
    Chain_Outer_8_Lag : constant := 0;
    pragma Compile_Time_Error
      (Chain_Outer_8_Lag >= Chain_Outer_8_Grid
-      or else Sensing_Let + Chain_Outer_8_Lag /= Chain_Outer_8_Grid
+      or else Sensing_Phase * Sensing_T + Sensing_Let + Chain_Outer_8_Lag
+        /= Estimator_Ports_Phase * Estimating_T + Chain_Outer_8_Grid
       or else Sensing_T
         /= Sensing_T / Chain_Outer_8_Grid * Chain_Outer_8_Grid
       or else Estimating_T
@@ -3105,7 +3283,9 @@ is
    Chain_Outer_10_Lag : constant := 0;
    pragma Compile_Time_Error
      (Chain_Outer_10_Lag >= Chain_Outer_10_Grid
-      or else Estimating_Let + Chain_Outer_10_Lag /= Chain_Outer_10_Grid
+      or else Estimator_Predict_Phase * Estimating_T + Estimating_Let
+        + Chain_Outer_10_Lag
+        /= Guiding_Phase * Guiding_T + Chain_Outer_10_Grid
       or else Estimating_T
         /= Estimating_T / Chain_Outer_10_Grid * Chain_Outer_10_Grid
       or else Guiding_T
@@ -3115,7 +3295,8 @@ is
    Chain_Outer_12_Lag : constant := 0;
    pragma Compile_Time_Error
      (Chain_Outer_12_Lag >= Chain_Outer_12_Grid
-      or else Guiding_Let + Chain_Outer_12_Lag /= Chain_Outer_12_Grid
+      or else Guiding_Phase * Guiding_T + Guiding_Let + Chain_Outer_12_Lag
+        /= Acting_Phase * Acting_T + Chain_Outer_12_Grid
       or else Guiding_T
         /= Guiding_T / Chain_Outer_12_Grid * Chain_Outer_12_Grid
       or else Acting_T
@@ -3145,7 +3326,8 @@ is
    Chain_Stick_9_Lag : constant := 0;
    pragma Compile_Time_Error
      (Chain_Stick_9_Lag >= Chain_Stick_9_Grid
-      or else Guiding_Let + Chain_Stick_9_Lag /= Chain_Stick_9_Grid
+      or else Guiding_Phase * Guiding_T + Guiding_Let + Chain_Stick_9_Lag
+        /= Acting_Phase * Acting_T + Chain_Stick_9_Grid
       or else Guiding_T
         /= Guiding_T / Chain_Stick_9_Grid * Chain_Stick_9_Grid
       or else Acting_T /= Acting_T / Chain_Stick_9_Grid * Chain_Stick_9_Grid,
