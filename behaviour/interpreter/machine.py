@@ -52,6 +52,10 @@ class Mailbox:
             self.waiting.popleft()
             self.waiting.append(value)
 
+    def coming(self) -> list[Value]:
+        """The values that the port region has not taken, oldest first."""
+        return list(self.waiting)
+
 
 class LogicalMailbox(Mailbox):
     """The values of a sender with a logical execution time, the newest first."""
@@ -66,6 +70,10 @@ class LogicalMailbox(Mailbox):
         """Keep a value that is visible from an instant on."""
         same = bool(self.kept) and self.kept[0][0] == visible
         self.kept = [(visible, value), *self.kept[same:]][: self.most]
+
+    def coming(self) -> list[Value]:
+        """As of any mailbox; some of the values are not visible yet."""
+        return [value for at, value in reversed(self.kept) if at >= self.next]
 
     def look(self, now: int) -> None:
         """Let the port region find the newest value that is visible and was not taken before."""

@@ -18,9 +18,10 @@ from functools import partial
 from pathlib import Path
 
 from .ada import Certificate, certificate
-from .deployment import Deployment, Task, ada
+from .deployment import Deployment
 from .findings import Report, UnusableError
 from .messages import Message
+from .tasks import Task, ada
 
 MOST_STEPS = 100_000
 ERROR_BITS = 31

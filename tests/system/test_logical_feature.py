@@ -17,8 +17,10 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.system.observed import read_map, read_trace
+from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.building import checking, generation, programs
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
+from ravenchart.gen.language.terms import Ns
 from ravenchart.paths import ROOT
 from tests.support import live
 from tests.support.interpreted import stimuli_of, system_of
@@ -127,3 +129,14 @@ def test_a_value_is_seen_at_the_first_release_after_its_instant() -> None:
     assert found["sink_1.seen"][:5] == [0, 4, 8, 12, 16]
     #  taken at 7, 17, 27, ... by a row of 10 ms with a phase of 5 ms
     assert found["fast_1.newest"][:4] == [1, 3, 5, 7]
+
+
+def test_a_mailbox_shows_what_its_port_has_not_taken() -> None:
+    machine = Machine(system_of(TEXT))
+    coming = []
+    for now, slots in machine.instants(Ns(7_000_000)):
+        list(machine.execute(now, slots))
+        box = machine.instances["sink_1"].mailboxes["mixed"]
+        coming.append((now // 1_000_000, box.coming()))
+    #  made at 0 and 5 ms, visible 3 ms later; the port looks at 1 ms and then at 21 ms
+    assert coming == [(0, [1]), (1, [1]), (2, [1]), (5, [1, 2]), (7, [1, 2])]

@@ -167,7 +167,7 @@ def _instances(play: Play) -> Iterator[Json]:
 def _port(run: InstanceRun, name: str) -> Json:
     """The reading of a port, and the values that wait in its mailbox."""
     reading, box = run.ports[name], run.mailboxes[name]
-    waiting: list[Value] = list(box.waiting)
+    waiting: list[Value] = box.coming()
     return {
         "state": reading.state.replace("_", " "),
         "value": value_text(reading.value),
