@@ -27,7 +27,7 @@ from ravenchart.gen.model.chart.steps import RAISED, Steps
 from ravenchart.gen.model.chart.tree import Tree
 from ravenchart.gen.model.commands import Binding, Need, Remote, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, PortKind
-from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.instances import End, Instance, Requests
 from ravenchart.gen.model.statechart import DONE, PseudoKind, Region
 from ravenchart.gen.model.system import Slot, System, Work
 
@@ -214,7 +214,8 @@ class _Counts:
             one += _Counts(self.system, binding.instance).replied(binding.need)
         one += Records(FRAME * len(calls_from_afar(self.system, self.instance.name, provided)))
         one += _sum(self._recorded(name) for name in activity.writes)
-        return one.times(provided.depth)
+        woken = self.system.called(Requests(self.instance.name, provided.name))
+        return one if woken is not None else one.times(provided.depth)
 
     # --- sending
 

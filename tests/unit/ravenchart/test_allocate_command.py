@@ -73,7 +73,7 @@ def test_the_table_fits_80_columns_and_says_what_stays(capsys: pytest.CaptureFix
     text = capsys.readouterr().out
     assert text.startswith("Cartesian_Robot: every deadline is met")
     assert max(map(len, text.splitlines())) <= 80
-    for phrase in ("reception (stays)", "  joint_x.ports", "Drivers, the host probe and sporadic"):
+    for phrase in ("reception (stays)", "  joint_x.ports", "Drivers, the host probe, sporadic"):
         assert phrase in text
 
 
