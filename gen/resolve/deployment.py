@@ -43,7 +43,7 @@ from ravenchart.gen.model.system import (
 from ravenchart.gen.origins import Origin
 
 from .components import Parts, timing_of
-from .composites import connectable
+from .composites import connectable, provided_by
 from .paths import DeploymentNames, event_at, member_of, split
 
 
@@ -313,10 +313,10 @@ def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | R
     instance, parts, name = found
     ports = connectable(parts)
     if not ports.knows(name):
-        offered = parts.component.provides if isinstance(parts, Parts) else ()
-        served = next((one for one in offered if one.name.lower() == name.lower()), None)
-        if served is not None:
-            return Requests(instance.name, served.name)
+        offered = provided_by(parts.component, damaged=False) if isinstance(parts, Parts) else None
+        if offered is not None and offered.knows(name):
+            served = offered.look_up(name, origin, site.findings)
+            return None if served is None else Requests(instance.name, served.name)
     port = ports.look_up(name, origin, site.findings)
     if port is None:
         return None

@@ -17,6 +17,8 @@ from ravenchart.paths import ROOT
 TWO_NODES = ROOT / "examples" / "two_nodes" / "model.yaml"
 KINDS = ROOT / "tests" / "feature" / "kinds" / "model.yaml"
 LAYOUTS = ROOT / "tests" / "feature" / "flexible" / "model.yaml"
+LOGICAL = ROOT / "tests" / "feature" / "logical" / "model.yaml"
+CALLED = ROOT / "tests" / "feature" / "called" / "model.yaml"
 NESTED = ROOT / "tests" / "feature" / "composites" / "model.yaml"
 
 
@@ -25,7 +27,7 @@ def _symbols(path: Path) -> list[ModelSymbol]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED])
+@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED, LOGICAL])
 def test_every_name_that_is_declared_can_be_changed(path: Path) -> None:
     now = model(path, {})
     symbols = _symbols(path)
@@ -58,3 +60,15 @@ def test_a_name_that_would_take_over_the_uses_of_another_is_refused(tmp_path: Pa
             continue
         with pytest.raises(NotRenamedError):
             renamed(now, symbol, other.name, {})
+
+
+def test_an_interface_that_releases_a_processor_is_named_anew_there_too() -> None:
+    now = model(CALLED, {})
+    text = CALLED.read_text(encoding="utf-8")
+    found = now.symbols.at(str(CALLED), text.index("      Motion:\n        queue") + 6)
+    assert found is not None
+    places = renamed(now, found[0], "Drive", {})
+    lines = {text.count("\n", 0, start) for spans in places.values() for start, _ in spans}
+    for number in (1, 2):
+        at = text.index(f"released_by: mover_{number}.Motion")
+        assert text.count("\n", 0, at) in lines

@@ -14,7 +14,7 @@ from ravenchart.allocation.proposals import STRATEGIES, Proposal, WantedTable, p
 from ravenchart.analysis.system.timing import Analysis
 from ravenchart.editing.edits import LayoutError
 from ravenchart.editing.evaluation import Evaluation, Texts, evaluate
-from ravenchart.editing.tables import rearranged
+from ravenchart.editing.tables import moved, rearranged
 from ravenchart.paths import ROOT
 
 ROBOT = ROOT / "examples" / "cartesian_robot" / "model.yaml"
@@ -163,3 +163,25 @@ def test_what_the_text_does_not_allow_is_refused(
     path, state = small(tmp_path, MODEL.replace(old, new))
     with pytest.raises(LayoutError, match=said):
         rearranged(path, state, (ONE,))
+
+
+PHASED = ROOT / "tests" / "feature" / "logical" / "model.yaml"
+
+
+@pytest.mark.parametrize(("row", "gone"), [
+    ("source_1.make_slowly", "source_1.make_slowly: 10 ms, "),
+    ("fast_1.look", "    phases: {fast_1.look: 5 ms}\n"),
+])  # fmt: skip
+def test_a_row_that_leaves_its_table_leaves_its_phase(row: str, gone: str) -> None:
+    places = evaluate(PHASED, {}).places
+    text = PHASED.read_text(encoding="utf-8")
+    assert gone in text
+    (made,) = moved(places, row, "keeping", 0).values()
+    assert made.text.count("phases") == text.replace(gone, "").count("phases")
+    assert row not in made.text.partition("    phases")[2].partition("\n")[0]
+
+
+def test_a_row_that_moves_inside_its_table_keeps_its_phase() -> None:
+    places = evaluate(PHASED, {}).places
+    (made,) = moved(places, "source_1.make_slowly", "making", 0).values()
+    assert "source_1.make_slowly: 10 ms" in made.text
