@@ -240,13 +240,10 @@ class Latencies:
         if len(senders) > 1:
             names = " and ".join(sender.name for sender in senders)
             made = replace(made, waits=f"{names} both send to {place}, which gives one in a job")
-        hider = (
-            hidden_by(self.system, before, place)
-            if port is not None and before in self.rows
-            else None
-        )
-        if hider is not None:
-            made = replace(made, waits=f"{hider} may hide the values of {before} in {place}")
+        if port is not None and before in self.rows:
+            hider = hidden_by(self.system, before, place)
+            if hider is not None:
+                made = replace(made, waits=f"{hider} may hide the values of {before} in {place}")
         processor, at = self.rows[row]
         slot = processor.slots[at]
         if processor.released_by_value is not None and made.hop is not HopKind.RELEASED:

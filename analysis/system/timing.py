@@ -83,7 +83,9 @@ class Analysis:
         phased = {task.name for task in self.network.tasks if is_phased(task)}
         if not phased and not any(response.alignment for response in self.responses):
             return self
-        tasks = [replace(task.at_any_time(), summed=True) for task in self.network.tasks]
+        tasks = [
+            replace(task.at_any_time(), summed=task.name in phased) for task in self.network.tasks
+        ]
         network = replace(self.network, tasks=tuple(tasks))
         found = holistic.analyse(network)
         late = {name for name in phased if not _is_alone(found.responses[name])}

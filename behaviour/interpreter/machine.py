@@ -42,8 +42,8 @@ class Mailbox:
         self.has_lost = False
         """A value was lost since the last run of the port region."""
 
-    def put(self, value: Value) -> None:
-        """Keep a value, or lose one."""
+    def put(self, value: Value, visible: int) -> None:
+        """Keep a value, or lose one; it is visible at once."""
         if len(self.waiting) < self.depth:
             self.waiting.append(value)
             return
@@ -51,6 +51,9 @@ class Mailbox:
         if self.policy is Overflow.DROP_OLDEST:
             self.waiting.popleft()
             self.waiting.append(value)
+
+    def look(self, now: int) -> None:
+        """Let the port region find what is visible at an instant: all that waits."""
 
     def coming(self) -> list[Value]:
         """The values that the port region has not taken, oldest first."""
@@ -66,7 +69,7 @@ class LogicalMailbox(Mailbox):
         self.kept: list[tuple[int, Value]] = []
         self.most, self.next = depth, 0
 
-    def show(self, value: Value, visible: int) -> None:
+    def put(self, value: Value, visible: int) -> None:
         """Keep a value that is visible from an instant on."""
         same = bool(self.kept) and self.kept[0][0] == visible
         self.kept = [(visible, value), *self.kept[same:]][: self.most]
@@ -264,19 +267,14 @@ class Machine:
                 self._put(entry.end, entry.value, now)
 
     def _put(self, end: End, value: Value, visible: int) -> None:
-        box = self.instances[end.instance].mailboxes[end.name]
-        if isinstance(box, LogicalMailbox):
-            box.show(value, visible)
-        else:
-            box.put(value)
+        self.instances[end.instance].mailboxes[end.name].put(value, visible)
 
     def _execute(self, now: Ns, slot: Slot) -> Iterator[StepRecord]:
         """One execution of a row."""
         match slot.work:
             case Work.PORT_REGION:
                 for box in self.instances[slot.owner].mailboxes.values():
-                    if isinstance(box, LogicalMailbox):
-                        box.look(now)
+                    box.look(now)
                 for name, value in self.instances[slot.owner].run_ports():
                     self._record(now, slot.owner, name, value)
             case Work.REGION:

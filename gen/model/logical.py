@@ -41,6 +41,8 @@ class LogicalLink:
     become visible after r: those of releases from r - L on, and before r + D. Each row has one in
     each of its periods, all rows together one for a release. One more is visible.
     """
+    by_releases: bool
+    """Whether the releases of the sender are fewer than the executions of its rows together."""
 
     @property
     def handler(self) -> str:
@@ -103,6 +105,7 @@ def _links(system: System) -> Iterator[LogicalLink]:
         if receiver.name == logical.name or receiver.released_by is not None:
             continue
         ahead = logical.logical + receiver.deadline
-        times = sum(-(-ahead // period_of(processor, slot)) for processor, slot in places)
-        depth = 1 + min(times, -(-ahead // logical.period))
-        yield LogicalLink(connection, logical, receiver, logical.logical, rows, depth)
+        of_rows = sum(-(-ahead // period_of(processor, slot)) for processor, slot in places)
+        of_releases = -(-ahead // logical.period)
+        depth, fewer = 1 + min(of_rows, of_releases), of_releases < of_rows
+        yield LogicalLink(connection, logical, receiver, logical.logical, rows, depth, fewer)

@@ -56,13 +56,13 @@ def periods_are_multiples(resolved: Resolved) -> Iterator[Diagnostic]:
 
 def _of_executive(processor: Processor, slots: Sequence[Slot]) -> Iterator[Diagnostic]:
     """The minor cycle divides all periods, and the major cycle has not too many of them."""
+    whole = Ns(math.gcd(*(slot.timing.period for slot in slots)))
     for slot in slots:
         if slot.timing.period % processor.period:
             message = (
                 f"the period of {slot.element}, {shown(slot.timing.period)}, is no multiple of "
                 f"{shown(processor.period)}, the minor cycle of {processor.name}"
             )
-            whole = Ns(math.gcd(*(one.timing.period for one in slots)))
             hint = f"leave `period` out: {shown(whole)} divides all periods"
             yield error("RV-0704", slot.origin, message, hint=hint)
             return
@@ -72,7 +72,6 @@ def _of_executive(processor: Processor, slots: Sequence[Slot]) -> Iterator[Diagn
             f"the table of {processor.name} repeats after {major // processor.period} releases; "
             f"the limit is {MOST_RELEASES}"
         )
-        whole = Ns(math.gcd(*(slot.timing.period for slot in slots)))
         hint = "choose periods with a shorter common multiple"
         if major // whole <= MOST_RELEASES:
             hint = f"choose a longer `period`: {shown(whole)} divides all periods"

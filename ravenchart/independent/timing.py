@@ -188,8 +188,16 @@ class Timing:
     def wcets(self, task: Task) -> dict[int, int]:
         """Its work with context switches."""
         works = dict(task.works)
-        works[1] += (4 if task.sporadic else 2) * self.switch(task.node)
+        works[1] += self.switches(task)
         return works
+
+    def longest(self, task: Task) -> int:
+        """The work of its longest job, with context switches."""
+        return task.longest + self.switches(task)
+
+    def switches(self, task: Task) -> int:
+        """The context switches of a job."""
+        return (4 if task.sporadic else 2) * self.switch(task.node)
 
     def _bus(self, name: str) -> None:
         form, own = self.deployment.buses.map(name), ada(name)
@@ -257,17 +265,17 @@ class Timing:
             if t.priority >= task.priority
             for n in self.wcets(t)
         ]
-        if any(row.phase for row in task.rows):
-            wanted = (4 if task.sporadic else 2) * self.switch(task.node) + task.longest
+        phased = any(row.phase for row in task.rows)
+        if phased:
+            wanted = self.longest(task)
             self.same("sums", f"{own}_Longest", wanted, f"the longest job of {task.element}")
         mine = [f"{own}_{'C' if n == 1 else f'C_{n}'}" for n in self.wcets(task)]
         for job, window in enumerate(windows, 1):
-            if job == 1 and any(row.phase for row in task.rows):
-                mine = [f"{own}_Longest"]
+            counted = [f"{own}_Longest"] if phased and job == 1 else mine
             tail = "" if len(windows) == 1 else f"_{job}"
             self.same("responses", f"{own}_W{tail}", window, f"the window of job {job}")
             self.same("responses", f"{own}_Needs{tail}", window, f"the demand of job {job}")
-            self.terms("responses", f"{own}_Needs{tail}", [*mine, f"{own}_B", *above])
+            self.terms("responses", f"{own}_Needs{tail}", [*counted, f"{own}_B", *above])
         if self.has(f"{own}_Reach"):
             self.report.skip("deadlines that are kept by offsets alone")
         else:
@@ -295,10 +303,8 @@ class Timing:
 
     def demand(self, task: Task, jobs: int, window: int) -> int:
         """The work of so many jobs and of all that delays them within a window."""
-        total = _work(self.wcets(task), jobs) + self.deployment.blocking(task)
-        if jobs == 1:
-            switches = self.wcets(task)[1] - task.works[1]
-            total = switches + task.longest + self.deployment.blocking(task)
+        own = self.longest(task) if jobs == 1 else _work(self.wcets(task), jobs)
+        total = own + self.deployment.blocking(task)
         release = self.deployment.nodes.map(task.node).time("release", 0)
         for other in self.deployment.tasks:
             if other.place != task.place:

@@ -41,17 +41,22 @@ def timed_by(processor: str, slots: Sequence[Slot], slot: Slot) -> str:
     return processor if always else slot.element
 
 
-def offset_of(system: System, processor: str) -> Expr:
-    """The offset of a processor, by its name below ``Timing_Certificate`` where it is stated."""
-    shifted = any(has_offset(system, task) for task in system.tasks if task.element == processor)
-    return ref(f"{name_of(processor)}_O") if shifted else number(0)
+def states_offset(system: System, processor: str) -> bool:
+    """Whether the certificate states the offset of a processor; else it is 0."""
+    return any(has_offset(system, task) for task in system.tasks if task.element == processor)
+
+
+def offset_fact(system: System, processor: str) -> Expr:
+    """The offset of a processor, as the program sees it."""
+    return fact(processor, "O") if states_offset(system, processor) else number(0)
 
 
 def first_release(system: System, processor: Processor, slot: Slot) -> Expr:
     """The release of the first execution of a row, in the names of the certificate."""
     timed = timed_by(processor.name, processor.slots, slot)
     late = times(ref(f"{name_of(timed)}_Phase"), ref(f"{name_of(processor.name)}_T"))
-    return plus(offset_of(system, processor.name), late)
+    own = ref(f"{name_of(processor.name)}_O")
+    return plus(own if states_offset(system, processor.name) else number(0), late)
 
 
 def agrees(given: Named, certified: Expr, element: str, what: str) -> Decl:

@@ -15,16 +15,11 @@ from ravenchart.gen.emit.ada.declarations import Decl
 from ravenchart.gen.emit.ada.expressions import number
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.statements import Comment
-from ravenchart.gen.model.logical import LogicalLink, logical_links, period_of, timed_row
+from ravenchart.gen.model.logical import logical_links, timed_row
 from ravenchart.gen.model.system import Processor, Slot, System
 
 from .certified import timed_by
 from .terms import ceiling, name_of, plus, refuse, stated, times
-
-
-def depth_name(link: LogicalLink) -> str:
-    """The name of the depth of a mailbox."""
-    return f"{name_of(str(link.connection.target))}_Depth"
 
 
 def mailbox_depths(system: System) -> Iterator[Decl]:
@@ -37,14 +32,12 @@ def mailbox_depths(system: System) -> Iterator[Decl]:
             ceiling(ahead, times(ref(f"{_timed(*place)}_Divisor"), ref(f"{sender}_T")))
             for place in places
         ]
-        whole = link.lasting + link.receiver.deadline
-        rows = sum(-(-whole // period_of(*place)) for place in places)
-        each = -(-whole // link.sender.period)
-        needed = one if rows <= each else [ceiling(ahead, ref(f"{sender}_T"))]
+        needed = [ceiling(ahead, ref(f"{sender}_T"))] if link.by_releases else one
         yield Comment(f"[{target}.mailbox] the values that it keeps")
-        yield stated(depth_name(link), link.depth)
+        depth = ref(f"{name_of(target)}_Depth")
+        yield stated(depth, link.depth)
         problem = "may lose a value that is visible"
-        yield refuse(plus(number(1), *needed), ref(depth_name(link)), target, problem)
+        yield refuse(plus(number(1), *needed), depth, target, problem)
 
 
 def _timed(processor: Processor, slot: Slot) -> str:

@@ -10,7 +10,6 @@ logic, and publishes what came out. Logic stays in the component's packages.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from ravenchart.gen.derive.crossing import core_of
 from ravenchart.gen.emit.ada.declarations import (
@@ -297,8 +296,7 @@ class Glue(Site):
                 case _:
                     activity = next(a for a in component.activities if a.name == slot.name)
                     run = [rows.run_activity(activity)]
-            last = replace(run[-1], body=(*(run[-1].body or ()), *next_instants(self, slot)))
-            items += [*run[:-1], executing(last, slot)]
+            items += [*run[:-1], executing(run[-1], slot, *next_instants(self, slot))]
         return tuple(items)
 
     def _board(self, name: str, of_type: Named, initial: Expr, element: str) -> GenericInstance:

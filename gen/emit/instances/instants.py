@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.emit.ada.declarations import Decl, Object, UseType
 from ravenchart.gen.emit.ada.expressions import Expr, call, number
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import ada_case
 from ravenchart.gen.emit.ada.statements import Assign, Comment, Stmt
-from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact, timed_by
+from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact, offset_fact, timed_by
 from ravenchart.gen.emit.certificate.terms import plus, times
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End
@@ -58,12 +57,7 @@ def instant_objects(site: Site) -> Iterator[Decl]:
         begin: Expr = number(first_of(processor, slot) + lasting)
         if not site.noted:
             late = times(_timed(processor, slot, "Phase"), fact(processor.name, "T"))
-            shifted = any(
-                has_offset(site.system, task)
-                for task in site.system.tasks
-                if task.element == processor.name
-            )
-            terms = [late, fact(processor.name, "O") if shifted else number(0)]
+            terms = [late, offset_fact(site.system, processor.name)]
             begin = plus(*terms, *([fact(processor.name, "Let")] if lasting else []))
         if lasting:
             yield Comment(f"[{slot.element}] from when on that is visible which it sends")

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from ravenchart.gen.derive.crossing import MAIN_CORE, core_of, other_cores
-from ravenchart.gen.derive.instants import has_offset
 from ravenchart.gen.derive.sharing import on_core
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
@@ -51,6 +50,7 @@ from ravenchart.gen.emit.certificate.certified import (
     CERTIFICATE,
     agrees,
     fact,
+    offset_fact,
     rows_agree,
     timed_by,
 )
@@ -207,8 +207,7 @@ def _numbered(name: str, item: MappedElement) -> Object:
 
 def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     root, name = root_package(system), processor_package(system, processor)
-    shifted = any(has_offset(system, t) for t in system.tasks if t.element == processor.name)
-    offset = fact(processor.name, "O") if shifted else number(0)
+    offset = offset_fact(system, processor.name)
     rows = tuple(row_name(s) for s in processor.slots)
     items: list[Decl] = [
         Comment(f"[{processor.name}.table] the activities, in the order of execution"),

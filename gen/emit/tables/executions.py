@@ -48,6 +48,6 @@ def executed(slot: Slot) -> Stmt:
     return Assign("Executed", OperatorChain("+", (ref("Executed"), row_of(slot))))
 
 
-def executing(run: Subprogram, slot: Slot) -> Subprogram:
-    """The body of a row's procedure, which notes that."""
-    return replace(run, params=(EXECUTED,), body=(*(run.body or ()), executed(slot)))
+def executing(run: Subprogram, slot: Slot, *last: Stmt) -> Subprogram:
+    """The body of a row's procedure, which notes that behind the ``last`` statements."""
+    return replace(run, params=(EXECUTED,), body=(*(run.body or ()), *last, executed(slot)))
