@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import first_of, logical_links, period_of, timed_row
+from ravenchart.gen.model.logical import first_of, links_by_port, period_of, timed_row
 from ravenchart.gen.model.system import Carried, Chain, System
 
 from .observed import Observation
@@ -79,8 +79,8 @@ def journeys(analysis: Analysis, seen: Observation) -> tuple[Journey, ...]:
 
 def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     """From each start of the first row to the end of the journey that the next one begins."""
-    start_of_all, *others = _stages(chain, system, seen)
-    first = [start for start in start_of_all.times if start >= seen.ready]
+    begin, *others = _stages(chain, system, seen)
+    first = [start for start in begin.times if start >= seen.ready]
     last = seen.executions.get(str(chain.way[-1]), 0)
     origins = first if isinstance(chain.way[0], Carried) else (None, *first)
     found = []
@@ -109,7 +109,7 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
     messages = {message.name: message for message in system.messages}
     inputs = {End(i.name, port.name) for i in system.instances for port in i.component.inputs()}
     rows = {slot.element for slot in system.slots}
-    links = {link.connection.target: link for link in logical_links(system)}
+    links = links_by_port(system)
     jobs: Sequence[int] = ()  # of the row before
     row = ""
     for place in chain.way:

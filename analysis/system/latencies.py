@@ -34,7 +34,7 @@ from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Requests
-from ravenchart.gen.model.logical import logical_links, saved_wait, timed_row
+from ravenchart.gen.model.logical import links_by_port, saved_wait, timed_row
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
@@ -256,12 +256,11 @@ class Latencies:
 
     def _visible(self, step: ChainStep, place: End, before: str) -> ChainStep:
         """The step, with the instants from which on it sees the values of the one before."""
-        for link in logical_links(self.system):
-            if link.connection.target == place and before in link.rows:
-                rows = timed_row(self.system, before), timed_row(self.system, step.name)
-                saved = saved_wait(*rows, link.lasting)
-                return replace(step, lasting=link.lasting, saved=saved)
-        return step
+        link = links_by_port(self.system).get(place)
+        if link is None or before not in link.rows:
+            return step
+        rows = timed_row(self.system, before), timed_row(self.system, step.name)
+        return replace(step, lasting=link.lasting, saved=saved_wait(*rows, link.lasting))
 
     def _rare(self, step: ChainStep, processor: Processor, sender: str) -> ChainStep:
         """The row that begins a release of a processor that a port releases.

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import LogicalLink, logical_links
+from ravenchart.gen.model.logical import LogicalLink, links_by_port, logical_links
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import System
 
@@ -70,7 +70,7 @@ def core_of(system: System, instance: str) -> int:
 
 def crossings(system: System) -> tuple[Crossing, ...]:
     """Every one of a program, in the order of the model."""
-    links = {one.connection.target: one for one in logical_links(system)}
+    links = links_by_port(system)
     return tuple(_crossings(system, links)) if links or other_cores(system) else ()
 
 

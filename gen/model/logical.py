@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from ravenchart.gen.language.terms import Ns
 
 from .component import PortKind
-from .instances import Connection
+from .instances import Connection, End
 from .system import Processor, Slot, System
 
 
@@ -55,6 +55,11 @@ def logical_links(system: System) -> tuple[LogicalLink, ...]:
     if all(processor.logical is None for processor in system.processors):
         return ()
     return tuple(_links(system))
+
+
+def links_by_port(system: System) -> dict[End, LogicalLink]:
+    """The same by the ports at which they end: each port has one source."""
+    return {link.connection.target: link for link in logical_links(system)}
 
 
 def logical_of(system: System, element: str) -> Ns | None:

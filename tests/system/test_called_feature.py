@@ -6,22 +6,19 @@
 from __future__ import annotations
 
 import shutil
-import signal
-import subprocess
-import time
 from pathlib import Path
 
 import pytest
 
 from ravenchart.analysis.system.commands import command_times
 from ravenchart.analysis.system.depths import depths
-from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import Analysis, analyse
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking, generation
 from ravenchart.commands.simulate import simulated_by_program
 from ravenchart.paths import ROOT
 from tests.support.interpreted import stimuli_of
 from tests.support.pump import loaded
+from tests.support.short_runs import observed
 
 FOLDER = ROOT / "tests" / "feature" / "called"
 TEXT = (FOLDER / "model.yaml").read_text(encoding="utf-8")
@@ -74,14 +71,7 @@ def test_a_run_executes_each_call_once(tmp_path: Path) -> None:
     folder = tmp_path / "called"
     shutil.copytree(FOLDER, folder)
     checked = checking.check(folder / "model.yaml")
-    generation.write_program(checked)
-    trace, program = folder / "trace", programs.programs_of(checked)[0].build()
-    process = subprocess.Popen([program], env={"RAVENCHART_TRACE": str(trace)})
-    time.sleep(1)
-    process.send_signal(signal.SIGTERM)
-    assert process.wait(5) == 0
-    names = read_map((folder / "generated" / "trace.json").read_text(encoding="utf-8"))
-    seen = read_trace(trace.read_text(encoding="ascii").splitlines(), names)
+    seen = observed(checked, folder, 1, waits=False)
     goals = [one.value for one in seen.values if one.element.name == "mover_2.Goal"]
     assert len(goals) > 50 and goals == list(range(1, len(goals) + 1))
     assert seen.processors["following"].releases == len(goals)

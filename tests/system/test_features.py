@@ -8,19 +8,16 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import signal
-import subprocess
-import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from ravenchart.analysis.system.observed import Observation, read_map, read_trace
-from ravenchart.building import checking, generation, programs
+from ravenchart.analysis.system.observed import Observation
+from ravenchart.building import checking
 from ravenchart.paths import ROOT
-from tests.support import live
+from tests.support.short_runs import observed
 
 pytestmark = pytest.mark.clock
 
@@ -49,16 +46,7 @@ def _run(folder: Path, expected: dict[str, Any]) -> Observation:
     assert re.findall(r"\[(RV-\d+)\]", checked.warnings) == expected.get("warnings", [])
     if not os.sched_getaffinity(0).issuperset(range(checked.system.most_cores)):
         pytest.skip(f"needs the first {checked.system.most_cores} processors of the machine")
-    generation.write_program(checked)
-    trace = folder / "trace"
-    program = programs.programs_of(checked)[0].build()
-    with live.alone():
-        process = subprocess.Popen([program], env={"RAVENCHART_TRACE": str(trace)})
-        time.sleep(expected["seconds"])
-        process.send_signal(signal.SIGTERM)
-        assert process.wait(5) == 0
-    names = read_map((folder / "generated" / "trace.json").read_text())
-    return read_trace(trace.read_text().splitlines(), names)
+    return observed(checked, folder, expected["seconds"])
 
 
 def _agrees(seen: list[str], wanted: list[str]) -> bool:

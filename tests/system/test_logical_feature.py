@@ -8,22 +8,18 @@ from __future__ import annotations
 import os
 import random
 import shutil
-import signal
-import subprocess
-import time
 from itertools import groupby
 from pathlib import Path
 
 import pytest
 
-from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.behaviour.interpreter.machine import Machine
-from ravenchart.building import checking, generation, programs
+from ravenchart.building import checking
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
 from ravenchart.gen.language.terms import Ns
 from ravenchart.paths import ROOT
-from tests.support import live
 from tests.support.interpreted import stimuli_of, system_of
+from tests.support.short_runs import observed
 
 FOLDER = ROOT / "tests" / "feature" / "logical"
 TEXT = (FOLDER / "model.yaml").read_text(encoding="utf-8")
@@ -63,15 +59,7 @@ def _run(text: str, folder: Path) -> Values:
     checked = checking.check(folder / "model.yaml")
     if not os.sched_getaffinity(0).issuperset(range(checked.system.most_cores)):
         pytest.skip(f"needs the first {checked.system.most_cores} processors of the machine")
-    generation.write_program(checked)
-    trace, program = folder / "trace", programs.programs_of(checked)[0].build()
-    with live.alone():
-        process = subprocess.Popen([program], env={"RAVENCHART_TRACE": str(trace)})
-        time.sleep(1)
-        process.send_signal(signal.SIGTERM)
-        assert process.wait(5) == 0
-    names = read_map((folder / "generated" / "trace.json").read_text(encoding="utf-8"))
-    seen = read_trace(trace.read_text(encoding="ascii").splitlines(), names)
+    seen = observed(checked, folder, 1)
     assert seen.values_lost == 0
     missed = {name: one.misses for name, one in seen.processors.items()}
     assert not any(missed.values()), f"the host withheld the processor: {missed}"

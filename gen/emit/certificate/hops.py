@@ -17,7 +17,7 @@ from ravenchart.gen.derive.calls import calls_at_once
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.instances import End, Requests
-from ravenchart.gen.model.logical import LogicalLink, logical_links
+from ravenchart.gen.model.logical import LogicalLink, links_by_port
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
@@ -156,10 +156,9 @@ def _handler(system: System, end: End, hops: list[ClaimedHop]) -> ClaimedHop:
     lost = bool(hops) and hops[-1].kind == "row" and hidden_by(system, hops[-1].element, end)
     if hops and _follows(system, hops[-1], element):
         return ClaimedHop(element, "row", "released", open=bool(lost))
-    link = None
-    if hops:
-        links = (one for one in logical_links(system) if one.connection.target == end)
-        link = next((one for one in links if hops[-1].element in one.rows), None)
+    link = links_by_port(system).get(end)
+    if link is not None and (not hops or hops[-1].element not in link.rows):
+        link = None
     return ClaimedHop(
         element, "row", "queued" if queued and hops else "sampled", open=bool(lost), link=link
     )

@@ -90,7 +90,7 @@ from ravenchart.gen.emit.tables.trace_calls import (
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.commands import Need, Provided
 from ravenchart.gen.model.component import Activity, Event, Port, PortKind
-from ravenchart.gen.model.logical import logical_links
+from ravenchart.gen.model.logical import links_by_port
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
@@ -467,7 +467,7 @@ class Glue(Site):
         if port.is_command:
             return call_body(self.system, self.instance, port, self._lost(port.name))
         ends, messages = self._targets(port.name)
-        visible = {one.connection.target for one in logical_links(self.system)}
+        visible = links_by_port(self.system)
         recorded = self._record(port.name, "Item")
         body: list[Stmt] = [*self._note("Sent", port.name, "port"), *recorded]
         for end in ends:
@@ -483,7 +483,7 @@ class Glue(Site):
         taken = ends or messages or recorded
         unused = () if taken else (Pragma("Unreferenced", (ref("Item"),)),)
         param = Param("Item", "in", type_name(self.system, port.type))
-        params = (param, VISIBLE) if visible & set(ends) else (param,)
+        params = (param, VISIBLE) if any(end in visible for end in ends) else (param,)
         return Subprogram(
             f"Send_{ada_case(port.name)}", params, declarations=unused, body=tuple(body)
         )

@@ -19,7 +19,14 @@ from ravenchart.gen.emit.certificate.certified import CERTIFICATE, fact, offset_
 from ravenchart.gen.emit.certificate.terms import plus, times
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.logical import LogicalLink, first_of, logical_links, period_of, timed_row
+from ravenchart.gen.model.logical import (
+    LogicalLink,
+    first_of,
+    links_by_port,
+    logical_links,
+    period_of,
+    timed_row,
+)
 from ravenchart.gen.model.system import Processor, Slot
 
 from .site import Site
@@ -29,8 +36,7 @@ TIMES = ref("Ravenchart.Logical_Times")
 
 def link_to(site: Site, port: Port) -> LogicalLink | None:
     """How the values of an input port become visible, where their sender decides that."""
-    end = End(site.instance.name, port.name)
-    return next((one for one in logical_links(site.system) if one.connection.target == end), None)
+    return links_by_port(site.system).get(End(site.instance.name, port.name))
 
 
 def sends_visibly(site: Site, port: str) -> bool:

@@ -56,7 +56,7 @@ from ravenchart.gen.emit.tables.port_calls import CROSSINGS, put_of
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End, Instance
-from ravenchart.gen.model.logical import logical_links
+from ravenchart.gen.model.logical import links_by_port, logical_links
 from ravenchart.gen.model.system import Processor, Slot, System
 
 INTEGER = ref("Long_Long_Integer")
@@ -259,7 +259,7 @@ def _taken(
     if any(p.name == what for p in ports):
         assert value is not None
         end = End(name, what)
-        links = {one.connection.target for one in logical_links(system)}
+        links = links_by_port(system)
         now = (call("Ravenchart.Nanoseconds", ref("Ravenchart.Steps.Now")),) if end in links else ()
         steps.append(do(ref(root, put_of(system, end)), value, *now))
     else:
