@@ -183,6 +183,7 @@ CODES: Mapping[str, str] = {
     "RV-0808": "A reference ends at a composite instance, or leads past its ports and interfaces.",
     "RV-0809": "A model has several deployments, and none of them is chosen.",
     "RV-0810": "A port or data item cannot be recorded.",
+    "RV-0811": "A library has no version, or what only a system has.",
     "RV-0901": "A task or message may miss its deadline.",
     "RV-0902": "The response time of a task or message has no bound.",
     "RV-0903": "The messages of a bus need more than all of its time.",

@@ -166,7 +166,10 @@ def record_names(name: str, folder: Path) -> tuple[str, ...]:
     """The records of the model in the folder: one, or one for each deployment and node."""
     generated = folder / "generated"
     homes = sorted(project.parent.relative_to(generated) for project in generated.rglob("*.gpr"))
-    return tuple("-".join((name, *home.parts)) for home in homes)
+    own = tuple("-".join((name, *home.parts)) for home in homes)
+    parts = {p.parent for p in folder.glob("*/generated/*-*.ads") if p.parent.parent.name != "user"}
+    libraries = sorted(project.stem for home in parts for project in home.glob("*.gpr"))
+    return (*own, *(f"{name}-{library}" for library in libraries))
 
 
 def _floats() -> Target:
@@ -248,7 +251,13 @@ def _runtime(driver: str) -> Target:
 
 
 def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[Target]:
-    for checked in _written(folder):
+    found = _written(folder)
+    for library in {one.path: one for checked in found for one in checked.libraries}.values():
+        driver = programs.default_driver(library)
+        for program in programs.programs_of(library):
+            if library.system.own_components:  # types alone need no proof
+                yield Target(f"{name}-{library.stem}", program.proof(driver, warnings=warnings))
+    for checked in found:
         driver = programs.default_driver(checked)
         for program in programs.programs_of(checked):
             parts = (name, checked.system.deployment, program.folder)

@@ -29,7 +29,7 @@ from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
-from .program import MadeUnit, program, simulated_units
+from .program import MadeUnit, library_program, program, simulated_units
 
 PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"})
 """Words that no GNAT project can have as its name, beside those of Ada."""
@@ -37,6 +37,8 @@ PROJECT_WORDS = frozenset({"project", "extends", "external", "external_as_list"}
 
 def _units(system: System) -> tuple[MadeUnit, ...]:
     """The units of the program and its simulated devices; claims are numbers, not names."""
+    if system.is_library:
+        return tuple(library_program(system))
     return (*program(system, Claims(), system), *simulated_units(system))
 
 
@@ -146,7 +148,7 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
     if not long:
         return
     reported: set[Origin] = set()
-    for made in (made for part in programs(system) for made in _units(part)):
+    for made in (made for part in _parts(system) for made in _units(part)):
         text = print_unit(made.unit, made.item)
         for line in text.splitlines():
             if len(line) <= WIDTH:
@@ -165,14 +167,20 @@ def _too_long(system: System) -> Iterator[Diagnostic]:
             yield error("RV-0304", found.origin, message, hint=hint)
 
 
+def _parts(system: System) -> tuple[System, ...]:
+    """The parts with a program of their own; a library is one part."""
+    return (system,) if system.is_library else programs(system)
+
+
 def clashes(system: System) -> Iterator[Diagnostic]:
     """An error for each name that the generated program could not have."""
     if system.name.lower() in PROJECT_WORDS:
-        message = f"a system cannot be named `{system.name}`, a word of GNAT projects"
+        kind = "library" if system.is_library else "system"
+        message = f"a {kind} cannot be named `{system.name}`, a word of GNAT projects"
         yield error("RV-0304", system.origin, message, hint="choose another name")
     yield from _too_long(system)
     reported: set[tuple[str, str]] = set()
-    for text, unit in (found for part in programs(system) for found in _clashing(part)):
+    for text, unit in (found for part in _parts(system) for found in _clashing(part)):
         found = _culprits(system, text, unit)
         if not found or (found[0].name.lower(), found[0].owner) in reported:
             continue

@@ -21,6 +21,7 @@ from . import deployments
 from .arrays import InstanceArray
 from .expansion import written_out
 from .forms import check
+from .libraries import LibraryFiles, LibraryReading
 from .located import grow, lines_of
 from .schema import ModelFile
 
@@ -50,6 +51,8 @@ class Content:
     deployment: str | None = None
     written: tuple[ModelFile, ...] = ()
     arrays: tuple[InstanceArray, ...] = ()
+    libraries: tuple[LibraryFiles, ...] = ()
+    """Each behind those that it uses; the last one is the model itself where that is a library."""
 
 
 def read_file(path: Path, limit: int) -> bytes:
@@ -72,11 +75,21 @@ class _Reading:
     sources: dict[str, tuple[str, ...]] = field(default_factory=dict)
     digest: hashlib._Hash = field(default_factory=hashlib.sha256)
     seen: set[str] = field(default_factory=set)
+    libraries: LibraryReading = field(default_factory=LibraryReading)
     whole: bool = True
     """Every file could be read."""
 
-    def take(self, path: Path, origin: Origin | None, chain: tuple[tuple[str, str], ...]) -> None:
-        """Read one file and what it includes; ``chain`` leads to it: (identity, as given)."""
+    def take(
+        self,
+        path: Path,
+        origin: Origin | None,
+        chain: tuple[tuple[str, str], ...],
+        includer: str | None = None,
+    ) -> None:
+        """Read one file and what it includes; ``chain`` leads to it: (identity, as given).
+
+        ``includer`` is the library of the file that includes it.
+        """
         shown = str(path)
         identity = os.path.normpath(os.path.abspath(path))
         at = origin or Origin(shown, 1, 1)
@@ -90,9 +103,13 @@ class _Reading:
             self.found.append(error("RV-0112", at, message, hint="remove this `include`"))
             return
         if identity in self.seen:
+            self.libraries.used(identity, includer)
+            wrong = self.libraries.misplaced(identity, includer, at)
+            self.found += [] if wrong is None else [wrong]
             return
         self.seen.add(identity)
-        text = self._text(path, shown, at)
+        content = self._content(path, shown, at)
+        text = None if content is None else self._text(content, shown, at)
         tree = None
         if text is not None:
             self.sources[shown] = lines_of(text)
@@ -107,6 +124,9 @@ class _Reading:
             self.whole = False
             return
         self.forms.append(form)
+        owner = self.libraries.owner(identity, form, includer)
+        self.libraries.add(identity, shown, content or b"", owner)
+        self.libraries.used(identity, includer)
         self.whole = self.whole and not form.list_damaged("include") and not form.lost("include")
         here = (*chain, (identity, shown))
         files = [(name, form.item_at("include", n)) for n, name in enumerate(form.include or ())]
@@ -120,10 +140,11 @@ class _Reading:
                 message = f"a model has at most {MOST_FILES} files"
                 self.found.append(error("RV-0102", included, message))
                 return
-            self.take(Path(PurePath(path).parent / name), included, here)
+            self.take(Path(PurePath(path).parent / name), included, here, owner)
+        self.libraries.ended(identity)
 
-    def _text(self, path: Path, shown: str, at: Origin) -> str | None:
-        """The text of a file, or a reported reason why there is none."""
+    def _content(self, path: Path, shown: str, at: Origin) -> bytes | None:
+        """The bytes of a file, or a reported reason why there are none."""
         try:
             content = self.read(path, LARGEST + 1)
         except (OSError, ValueError) as problem:  # ValueError: a NUL in the name
@@ -137,6 +158,10 @@ class _Reading:
             message = f"{shown} is larger than {LARGEST // 2**20} MiB"
             self.found.append(error("RV-0102", at, message, hint=hint))
             return None
+        return content
+
+    def _text(self, content: bytes, shown: str, at: Origin) -> str | None:
+        """The text of a file, or a reported reason why it is none."""
         try:
             return content.decode("utf-8").removeprefix("\ufeff")
         except UnicodeDecodeError as problem:
@@ -178,4 +203,5 @@ def read_model(path: Path, read: Reader = read_file) -> Content:
         None if chosen is None else deployments.folder_of(chosen),
         forms,
         plain.arrays,
+        reading.libraries.libraries(plain.forms),
     )

@@ -21,6 +21,7 @@ from .schema_base import (
     PositiveSpan,
     Reference,
     StarredReference,
+    Version,
     key,
     optional,
     shaped,
@@ -457,8 +458,14 @@ class ModelFile(Element):
     """A model file. Every section may stand in any file, `system` in one only."""
 
     system: Name | None = optional("Name of the system; in the main file, and only there.")
+    library: Name | None = optional(
+        "Name of a library, in its main file: in place of `system`. Its types, commands and "
+        "components are the same in each system that includes the file."
+    )
+    version: Version | None = optional("Version of the library, for example `1.2.0`.")
     include: list[str] | None = optional(
-        "Files whose sections belong to the model, relative to this file."
+        "Files whose sections belong to the model, relative to this file, and main files of "
+        "libraries that it uses."
     )
     deployments: dict[Name, str] | None = optional(
         "In the main file: alternatives by their names, each with a file that is included where it "

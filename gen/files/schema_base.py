@@ -30,7 +30,9 @@ from ravenchart.gen.language.names import (
     LONGEST_DATABASE_NAME,
     LONGEST_NAME,
     LONGEST_REQUIREMENT,
+    LONGEST_VERSION,
     REQUIREMENT,
+    VERSION,
     database_problem_of,
     database_text_problem_of,
     problem_of,
@@ -225,6 +227,19 @@ def _scalar(value: object) -> int | bool | str:
         raise _required("RV-0203", "must be a value")
     return value
 
+
+def _version(value: object) -> object:
+    if not (isinstance(value, str) and re.match(VERSION, value)) or len(value) > LONGEST_VERSION:
+        raise _required("RV-0811", "must be a version such as `1.2.0`")
+    return value
+
+
+Version = Annotated[
+    str,
+    BeforeValidator(_version),
+    WithJsonSchema({"type": "string", "pattern": VERSION, "maxLength": LONGEST_VERSION}),
+]
+"""A version: numbers, and behind them what else tells it apart, as in semver.org, 2.0.0."""
 
 ScalarValue = Annotated[
     int | bool | str,

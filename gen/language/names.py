@@ -19,6 +19,9 @@ LONGEST_NAME = 60
 REQUIREMENT = r"^[A-Za-z0-9]([-_A-Za-z0-9.:/]*[A-Za-z0-9])?$"
 """The id of a requirement, as a list of requirements has it."""
 LONGEST_REQUIREMENT = 64
+VERSION = r"^[0-9]+(\.[0-9]+){1,2}([-+][-+.A-Za-z0-9]+)?$"
+"""The version of a library."""
+LONGEST_VERSION = 40
 DATABASE_NAME = r"^[_A-Za-z][_A-Za-z0-9]*$"
 """The form of a message's or signal's name in a CAN database (DBC): an identifier of C."""
 LONGEST_DATABASE_NAME = 128

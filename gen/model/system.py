@@ -291,6 +291,38 @@ class System:
     """The items that `record` names."""
     deployment: str | None = None
     """The deployment that was chosen, in lower case, where the model has several."""
+    version: str | None = None
+    """Of a library: types and components for other systems. None: this is a system."""
+    files: tuple[str, ...] = ()
+    """The files of a library, main file first."""
+    libraries: tuple[System, ...] = ()
+    """Those that it uses, directly or by another, each behind those that it uses itself."""
+
+    @property
+    def is_library(self) -> bool:
+        """Whether it is a library: it has no instances, and no program of its own."""
+        return self.version is not None
+
+    def library_of(self, element: Type | Component) -> System | None:
+        """The library that declares a type or component; None: this system itself."""
+        return self._in_libraries.get(element.name.lower())
+
+    @cached_property
+    def _in_libraries(self) -> dict[str, System]:
+        found: dict[str, System] = {}
+        for one in self.libraries:
+            for item in (*one.types, *one.components):
+                found.setdefault(item.name.lower(), one)
+        return found
+
+    def home_of(self, element: Type | Component) -> System:
+        """The library that declares a type or component, or this system itself."""
+        return self.library_of(element) or self
+
+    @property
+    def own_components(self) -> tuple[Component, ...]:
+        """The components that no library declares."""
+        return tuple(c for c in self.components if self.library_of(c) is None)
 
     @property
     def frames(self) -> tuple[Message, ...]:

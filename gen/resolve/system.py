@@ -49,6 +49,7 @@ from .deployment import (
 )
 from .devices import Devices, Provider, device_type_of
 from .interfaces import command_of, declare_vectors
+from .libraries import check_named
 from .messages import message_of
 from .paths import DeploymentNames, Owners
 from .placing import connection_of, inner_connections, place_instance
@@ -121,21 +122,22 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
     """
     model = Merged(files)
     main = files[0]
-    name = main.system
+    kind = "system" if main.library is None else "library"
+    name = main.system if main.library is None else main.library
     if name is None:
-        if not main.lost("system"):
+        if not (main.lost("system") or main.lost("library")):
             message = "the model has no name"
             hint = "begin with `system: Name_Of_The_System`"
             findings.error("RV-0801", main.origin, message, hint=hint)
         name = ""
     elif name.lower() in PREDEFINED_TYPES:
-        message = f"a system cannot be named `{name}`, like a unit or type of Ada"
-        findings.error("RV-0304", main.at("system"), message, hint="choose another name")
+        message = f"a {kind} cannot be named `{name}`, like a unit or type of Ada"
+        findings.error("RV-0304", main.at(kind), message, hint="choose another name")
     elif name.lower() in GNAT_PREFIXES:
         message = (
-            f"a system cannot be named `{name}`: GNAT keeps files `{name.lower()}-*` for itself"
+            f"a {kind} cannot be named `{name}`: GNAT keeps files `{name.lower()}-*` for itself"
         )
-        findings.error("RV-0304", main.at("system"), message, hint="choose a longer name")
+        findings.error("RV-0304", main.at(kind), message, hint="choose a longer name")
     for file in files[1:]:
         if file.system is not None:
             message = "only the main file names the system"
@@ -145,6 +147,7 @@ def resolve(files: Sequence[ModelFile], whole: bool, digest: str, findings: Find
             message = "only the main file has deployments"
             hint = "move them there, with paths relative to it"
             findings.error("RV-0803", file.at_key("deployments"), message, hint=hint)
+    check_named(files, findings)
     _check_sections(model, whole, findings)
     _check_units(model, name, findings)
     return _build(model, name, whole, digest, findings)
@@ -159,7 +162,8 @@ MOST_BUSES = 8
 
 def _check_sections(model: Merged, whole: bool, findings: Findings) -> None:
     """Sections that a system must have, and elements of which it has one or a limited number."""
-    for section, noun in NEEDED.items():
+    needed = NEEDED if model.files[0].library is None else {}
+    for section, noun in needed.items():
         if whole and model.is_empty(section):
             hint = f"declare one under `{section}:`"
             findings.error("RV-0801", model.origin(section), f"the system has no {noun}", hint=hint)
@@ -363,6 +367,7 @@ class _Sections:
 
 def _build(model: Merged, name: str, whole: bool, digest: str, findings: Findings) -> Resolved:
     """Section by section, in the order in which they refer to each other."""
+    main = model.files[0]
     sections = _Sections(model, whole, findings)
     type_forms = [(key, form.origin, form) for key, form in model.entries("types")]
     types = types_of(type_forms, model.dropped("types"), name, findings)
@@ -428,7 +433,8 @@ def _build(model: Merged, name: str, whole: bool, digest: str, findings: Finding
     connections, carried = carrier.carried((*connections, *wires), messages.sound())
     system = System(
         name=name,
-        origin=model.files[0].at_key("system"),
+        origin=model.files[0].at_key("system" if main.library is None else "library"),
+        version=main.version,
         digest=digest,
         types=_declared(types),
         components=tuple(part.component for part in parts),

@@ -8,8 +8,9 @@ from __future__ import annotations
 import hashlib
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from ravenchart.analysis.findings.claims import Unclaimed, claims_of, uncertified
@@ -19,6 +20,7 @@ from ravenchart.gen.emit.clashes import clashes
 from ravenchart.gen.emit.program import (
     first_versions,
     generate,
+    library_files,
     user_units,
 )
 from ravenchart.gen.model.claims import Claims
@@ -56,15 +58,47 @@ def write_program(checked: Checked) -> Written:
 
     Files are replaced only when their bytes differ, so that builds stay
     incremental; files of the last generation that are no longer made go. `Refused` for
-    what can be analysed only.
+    what can be analysed only. The libraries that the model uses are written before it, each
+    beside its own main file.
     """
+    libraries = [_written(one) for one in checked.libraries]
+    return _joined(_written(checked), libraries)
+
+
+def _joined(own: Written, libraries: Sequence[Written]) -> Written:
+    """The result for a system, with what was found of the libraries that it uses."""
+    if not libraries:
+        return own
+    user = dict(own.user)
+    for one in libraries:
+        made = {one.folder / name: digest for name, digest in listed_in(one.folder).items()}
+        user |= {one.folder / MANIFEST: one.manifest, **made, **one.user}
+    return replace(
+        own,
+        changed=own.changed + sum(one.changed for one in libraries),
+        files=own.files + sum(one.files for one in libraries),
+        edited=(
+            *own.edited,
+            *(os.path.relpath(x.folder / name, own.folder) for x in libraries for name in x.edited),
+        ),
+        first=(*(path for one in libraries for path in one.first), *own.first),
+        untouched=(*(path for one in libraries for path in one.untouched), *own.untouched),
+        user=user,
+    )
+
+
+def _written(checked: Checked) -> Written:
     gaps = tuple(unready(checked.system))
     if gaps:
         raise Refused("\n".join(render(gap, {}) for gap in gaps), gaps)
     without_clashes(checked)
     folder = checked.generated
     folder.mkdir(parents=True, exist_ok=True)
-    files = generate(checked.system, claims(checked))
+    files = (
+        library_files(checked.system)
+        if checked.system.is_library
+        else generate(checked.system, claims(checked))
+    )
     old = listed_in(folder)
     edited = tuple(n for n, digest in old.items() if _edited(folder / n, digest, files.get(n)))
     for name in edited:
@@ -115,7 +149,10 @@ def _digest(data: bytes) -> str:
 
 def write_first_versions(checked: Checked) -> tuple[Path, ...]:
     """Write what is the user's and not there yet; the files that were written."""
-    return _write_absent(checked.folder, first_versions(checked.system))
+    models = (*checked.libraries, checked)
+    return tuple(
+        path for one in models for path in _write_absent(one.folder, first_versions(one.system))
+    )
 
 
 def _write_absent(folder: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:

@@ -124,6 +124,22 @@ class Program:
             self._examine(made, mode, target, board)
         return made
 
+    def compile(
+        self,
+        mode: str = "checks",
+        warn: Callable[[str], None] = to_standard_error,
+        tell: Callable[[str], None] = lambda _: None,
+    ) -> Path:
+        """Compile a library, which has no main program; the folder of its objects."""
+        driver = default_driver(self.checked)
+        options = ("-p", "-q", "-j0", "-P", self.project.name)
+        home = self.home(driver) / self.checked.stem / mode
+        scenario = self.scenario(mode, driver)
+        said = Compilation(options, self.project.parent, scenario, home).run(tell=tell)
+        if said.strip():
+            warn(said.rstrip())
+        return home
+
     def compilation(
         self,
         mode: str = "checks",
@@ -168,7 +184,8 @@ class Program:
 
     def digests(self) -> dict[str, str]:
         """SHA-256 of each of its Ada sources, by the name from the folder of the model."""
-        return stacks.digests((self.generated, *self._user_folders()), self.checked.folder)
+        folders = (self.generated, *self._user_folders(), *self._of_libraries())
+        return stacks.digests(folders, self.checked.folder)
 
     def _examine(
         self, made: Path, mode: str, target: targets.Target, board: targets.Board | None
@@ -224,14 +241,18 @@ class Program:
 
     @property
     def part(self) -> System:
-        """The part of the system that the program is made of."""
+        """The part of the system that the program is made of; a library is one part."""
+        if self.checked.system.is_library:
+            return self.checked.system
         return next(p for p in programs(self.checked.system) if p.nodes[0].name == self.node)
 
     def proof(self, driver: str, *, warnings: str = "continue", whole: bool = False) -> ProofTask:
         """The run of gnatprove on it, with the runtime and the HAL again if ``whole``."""
-        own = self.home(driver) / "checks" / "gnatprove"
+        apart = self.checked.stem if self.checked.system.is_library else ""
+        own = self.home(driver) / apart / "checks" / "gnatprove"
         runtime = work() / "obj" / f"checks-{driver}" / "gnatprove"
-        read = (self.generated, *self._user_folders(), *runtime_folders(driver))
+        read = (self.generated, *self._user_folders(), *self._of_libraries())
+        read = (*read, *runtime_folders(driver))
         scenario = self.scenario("checks", driver)
         if has_lifecycle(self.part):
             read = (*read, ROOT / RUNTIME_FOLDER)
@@ -251,9 +272,16 @@ class Program:
     def _user_folders(self) -> tuple[Path, ...]:
         return tuple(self.checked.folder / place for place in source_folders(self.part))
 
+    def _of_libraries(self) -> tuple[Path, ...]:
+        """The folders of the libraries that it uses."""
+        found = (Program(one, "", "") for one in self.checked.libraries)
+        return tuple(f for one in found for f in (one.generated, *one._user_folders()))
+
 
 def programs_of(checked: Checked) -> tuple[Program, ...]:
-    """The program of each node that runs something."""
+    """The program of each node that runs something; of a library all that it has."""
+    if checked.system.is_library:
+        return (Program(checked, "", ""),)
     return tuple(
         Program(checked, part.nodes[0].name, folder_of(part, checked.system).rstrip("/"))
         for part in programs(checked.system)

@@ -64,7 +64,7 @@ def _switches(options: argparse.Namespace) -> tuple[str, ...]:
 
 def _build(options: argparse.Namespace) -> None:
     """All of it."""
-    checked = common.checked(options)
+    checked = common.checked(options, library=True)
     board = common.board(options, checked)
     from ravenchart.building import programs, stacks, targets
 
@@ -72,6 +72,11 @@ def _build(options: argparse.Namespace) -> None:
     unchanged.keep(checked, written)
     options.answer.result = BuildResult(generated, [])
     found = programs.programs_of(checked)
+    if checked.system.is_library:
+        with stages(f"compile {checked.system.name}") as tell:
+            home = found[0].compile(options.mode, _warn(options), tell)
+        print(f"compiled {checked.system.name}: {home}")
+        return
     done = []
     for made in found:
         done.append(_built(options, made, board))

@@ -67,7 +67,7 @@ def _all(options: argparse.Namespace) -> int:
 
 
 def _one(options: argparse.Namespace) -> int:
-    found = common.checked(options, finish=True)
+    found = common.checked(options, finish=True, library=True)
     system = found.system
     options.answer.result = CheckResult(
         system.name,

@@ -189,14 +189,21 @@ def say_at_once(text: str) -> None:
 
 
 def checked(
-    options: argparse.Namespace, *, deadlines: bool = True, finish: bool = False
+    options: argparse.Namespace,
+    *,
+    deadlines: bool = True,
+    finish: bool = False,
+    library: bool = False,
 ) -> Checked:
-    """The model, with its warnings printed; Refused with its errors."""
+    """The model, with its warnings printed; Refused with its errors.
+
+    ``library``: it may be a library.
+    """
     with without_collector():
         from ravenchart.building import checking
 
     with progress(f"check {options.model.name}"):
-        found = checking.check(options.model, deadlines=deadlines, finish=finish)
+        found = checking.check(options.model, deadlines=deadlines, finish=finish, library=library)
     tell_warnings(found.warnings)
     options.answer.add(found.diagnostics)
     return found
@@ -223,6 +230,10 @@ def several(count: int, what: str) -> str:
 def verdict(found: Checked) -> str:
     """One line on a model without errors."""
     system = found.system
+    if system.is_library:
+        types = [one for one in system.types if system.library_of(one) is None]
+        parts = several(len(types), "type"), several(len(system.own_components), "component")
+        return f"{system.name} {system.version}: a library of {' and '.join(parts)}"
     instances = several(len(system.instances), "instance")
     processors = several(len(system.processors), "processor")
     messages = several(len(system.messages), "message")

@@ -69,7 +69,8 @@ def execute(options: argparse.Namespace) -> int:
     if options.from_ada is not None:
         drawings = texts_of_ada(options.from_ada, options.format)
     else:
-        drawings = texts(common.checked(options, deadlines=False).system, options.format)
+        found = common.checked(options, deadlines=False, library=True)
+        drawings = texts(found.system, options.format)
     folder = options.out or (options.from_ada or options.model).parent / "drawings"
     with progress("draw"):
         write(drawings, folder)

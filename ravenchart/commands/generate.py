@@ -21,7 +21,7 @@ def execute(options: argparse.Namespace) -> int:
     if before is not None:
         options.answer.result = common.generated_before(before, options.answer)
         return OK
-    checked = common.checked(options)
+    checked = common.checked(options, library=True)
     written, options.answer.result = common.write(checked, options.answer)
     unchanged.keep(checked, written)
     return OK

@@ -55,19 +55,22 @@ def _memcached(address: str) -> verdicts.Memcached:
 
 def execute(options: argparse.Namespace) -> int:
     """Prove every program of the model; the exit status."""
-    checked = common.checked(options)
+    checked = common.checked(options, library=True)
     _, generated = common.write(checked, options.answer)
     answer = options.answer.result = ProveResult(generated, [])
     driver = options.driver or programs.default_driver(checked)
     programs.check_driver(checked, driver)
-    made = programs.programs_of(checked)
+    libraries = [one for used in checked.libraries for one in programs.programs_of(used)]
+    nodes = programs.programs_of(checked)
+    made = [*libraries, *nodes]
     reasons = outside_spark.reasons_for_model(checked.folder, slots=has_slots(checked.system))
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:
         task = one.proof(driver, whole=options.whole)
         open_: tuple[unproved.UnprovedCheck, ...] = ()
-        with stages(f"prove {one.node}") as tell:
+        name = one.node or one.checked.system.name
+        with stages(f"prove {name}") as tell:
             try:
                 proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
             except proving.NotProved as left:
@@ -76,16 +79,17 @@ def execute(options: argparse.Namespace) -> int:
                 text = proving.examples(task, proof) or str(left)
                 places = [path for path in task.sources if path.is_dir()]
                 found = proof.results.open
-                open_ = unproved.findings(text, found, checked.system, checked.folder, places)
+                home = one.checked
+                open_ = unproved.findings(text, found, home.system, home.folder, places)
         for finding in open_:
             say(options.answer, "\n".join(finding.lines()))
-        answer.programs.append(_proved(one.node, proof, open_))
-        where = f" on {one.node}" if len(made) > 1 else ""
-        print(f"{checked.system.name}{where}: {proof.summary()}", flush=True)
+        answer.programs.append(_proved(name, proof, open_))
+        where = f" on {one.node}" if one in nodes and len(nodes) > 1 else ""
+        print(f"{one.checked.system.name}{where}: {proof.summary()}", flush=True)
         clean = clean and proof.clean
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
-            record = record_of(options.record, one.node, several=len(made) > 1)
+            record = record_of(options.record, name, several=len(made) > 1)
             record.write_text(proving.record_text(proof), encoding="utf-8")
     for line in outside_spark.lines(tuple(outside), reasons):
         if line.startswith("error"):

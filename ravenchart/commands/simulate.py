@@ -43,6 +43,7 @@ from ravenchart.gen.emit.program import simulation, simulation_folders, source_f
 from ravenchart.gen.files.load import LARGEST, read_file
 from ravenchart.gen.files.located import lines_of
 from ravenchart.gen.language.terms import IntegerType
+from ravenchart.gen.model.places import library_beside
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 from ravenchart.paths import ROOT
@@ -174,7 +175,13 @@ def build_simulation(
 def places_of_user(system: System, folder: Path) -> list[Path]:
     """Where the sources are that are not generated, below the ``folder`` of the model."""
     written = (*source_folders(system), *simulation_folders(system))
-    return [(folder / place).resolve() for place in written]
+    own = [(folder / place).resolve() for place in written]
+    libraries = [
+        (folder / library_beside(system, one).parent / place).resolve()
+        for one in system.libraries
+        for place in source_folders(one)
+    ]
+    return [*own, *libraries]
 
 
 def run_simulation(system: System, program: Path, stimuli: Stimuli) -> list[StepRecord]:

@@ -74,7 +74,7 @@ def _checked(model: Path, seen: dict[Path, Stamp]) -> tuple[str, bool]:
         return read_file(path, limit)
 
     try:
-        found = checking.check(model, finish=True, read=read)
+        found = checking.check(model, finish=True, read=read, library=True)
     except Failure as failure:
         print(failure.shown(), file=sys.stderr, flush=True)
         return f"FAILED: {_counted(failure)}", False

@@ -38,8 +38,8 @@ from .results import FAILED, SKIPPED
 def claims(facts: Facts) -> tuple[Claim, ...]:
     """Every claim, in the order of the argument."""
     return (
-        *(_translation(facts, node) for node in facts.nodes),
-        *(_program(facts, node) for node in facts.nodes),
+        *(_translation(facts, node) for node in facts.programs),
+        *(_program(facts, node) for node in facts.programs),
         *_charts(facts),
         *_frames(facts),
         *_behaviour(facts),
@@ -53,6 +53,8 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
 
 
 def _on(facts: Facts, node: NodeFacts) -> str:
+    if node in facts.libraries:
+        return f" of the library {node.name}"
     return f" on {node.name}" if len(facts.nodes) > 1 else ""
 
 
@@ -61,7 +63,8 @@ def _several(count: int, what: str) -> str:
 
 
 def _id(word: str, facts: Facts, node: NodeFacts) -> str:
-    return f"{word}-{node.name}" if len(facts.nodes) > 1 else word
+    is_one = len(facts.nodes) == 1 and node in facts.nodes
+    return word if is_one else f"{word}-{node.name}"
 
 
 # --- Program ---------------------------------------------------------------------
@@ -170,8 +173,15 @@ def _was_read(record: BelievedRecord, unit: str) -> bool:
 
 
 def _homes(facts: Facts, component: Component) -> Iterator[tuple[NodeFacts, str]]:
-    """Each program with an instance of a component, and the suffix of a claim about it."""
-    for node in facts.nodes:
+    """Each program with the code of a component, and the suffix of a claim about it.
+
+    That is the library which declares it, or each node with an instance.
+    """
+    library = facts.checked.system.library_of(component)
+    for node in facts.libraries if library else ():
+        if library is not None and node.name == library.name:
+            yield node, ""
+    for node in () if library else facts.nodes:
         here = node.program.part.instances
         if any(one.component.name == component.name for one in here):
             yield node, f"-{node.name}" if len(facts.nodes) > 1 else ""
@@ -182,7 +192,7 @@ def _charts(facts: Facts) -> Iterator[Claim]:
     for component in system.components:
         for node, suffix in _homes(facts, component):
             for region in component.regions:
-                unit = region_package(system, component, region).text
+                unit = region_package(system.home_of(component), component, region).text
                 verdict, problems, told = _proved_unit(node, unit)
                 yield Claim(
                     f"chart-{component.name}.{region.name}{suffix}",
@@ -211,7 +221,8 @@ def _invariants(
     for safe in system.safe_regions:
         if safe.component != component.name:
             continue
-        unit = region_package(system, component, component.region(safe.region)).text
+        region = component.region(safe.region)
+        unit = region_package(system.home_of(component), component, region).text
         verdict, problems, told = _proved_unit(node, unit)
         for name in safe.invariants:
             yield Claim(
@@ -241,7 +252,7 @@ def _theorem(region: Region) -> str:
 
 def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
     """Activities: flows that are generated, and bodies of the user."""
-    package = component_package(facts.checked.system, component)
+    package = component_package(facts.checked.system.home_of(component), component)
     for child, mine in ((FLOWS, False), (ACTIVITIES, True)):
         names = [a.name for a in component.activities if (a.flow is None) == mine]
         if not names:
@@ -272,14 +283,16 @@ def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) ->
 
 def _contracts(facts: Facts, component: Component, node: NodeFacts, suffix: str) -> Iterator[Claim]:
     """Conditions of activities: `requires` is shown at each call, `ensures` of each body."""
-    system, part = facts.checked.system, node.program.part
+    system = facts.checked.system
+    places = facts.nodes if node in facts.libraries else (node,)
     for activity in component.activities:
-        own = component_package(system, component)
-        home = ref(own, activity_package(component, activity)).text
+        own = component_package(system.home_of(component), component)
+        home = node, ref(own, activity_package(component, activity)).text
         callers = [
-            instance_package(system, one).text
-            for one in part.instances
-            if any(slot.name == activity.name for slot in part.slots_of(one.name))
+            (place, instance_package(system, one).text)
+            for place in places
+            for one in place.program.part.instances
+            if any(s.name == activity.name for s in place.program.part.slots_of(one.name))
             and one.component.name == component.name
         ]
         for side, clauses, when, units, theorem in (
@@ -288,7 +301,7 @@ def _contracts(facts: Facts, component: Component, node: NodeFacts, suffix: str)
         ):
             if not clauses or not units:
                 continue
-            found = [_proved_unit(node, unit) for unit in units]
+            found = [_proved_unit(place, unit) for place, unit in units]
             verdict, problems, told = next((f for f in found if f[0] is not Shown.MET), found[0])
             yield Claim(
                 f"{side}-{component.name}.{activity.name}{suffix}",
@@ -458,7 +471,7 @@ def _tests(facts: Facts) -> Claim:
 def unit_files(facts: Facts, stem: str) -> tuple[str, ...]:
     """The generated files of a unit and its children, by the beginning of their names."""
     found = []
-    for node in facts.nodes:
+    for node in facts.programs:
         for name, _ in node.files:
             file = name.rpartition("/")[2].rpartition(".")[0]
             if name.endswith(records.ADA) and (file == stem or file.startswith(f"{stem}-")):

@@ -29,13 +29,14 @@ def coverage(facts: Facts) -> Iterator[Claim]:
     texts = simulation(system)
     for component in system.components:
         for region in component.regions:
-            stem = region_package(system, component, region).file_stem
+            stem = region_package(system.home_of(component), component, region).file_stem
             name = f"{component.name}.{region.name}"
             files = [f"{stem}.adb", f"{stem}.ads"]
             given = [(file, texts[file].encode("utf-8")) for file in files]
             yield _claim(facts, f"coverage-{name}", (name,), given, counted)
-    for place in source_folders(system):
-        for path in sorted((facts.checked.folder / place).glob("*.adb")):
+    models = (*facts.checked.libraries, facts.checked)
+    for place in (one.folder / place for one in models for place in source_folders(one.system)):
+        for path in sorted(place.glob("*.adb")):
             id_ = f"coverage-{path.stem}"
             yield _claim(facts, id_, (), [(path.name, path.read_bytes())], counted)
 

@@ -74,15 +74,16 @@ def sbom(facts: Facts) -> dict[str, Any]:
             _files((p for place in runtime_folders(facts.driver) for p in place.glob("*")), folder),
         )
     ]
-    for node in facts.nodes:
+    for node in facts.programs:
         listed = [pair for pair in node.files if pair[0].endswith((*records.ADA, ".gpr"))]
-        name = f"generated program on {node.name}"
+        where = "of the library" if node in facts.libraries else "on"
+        name = f"generated program {where} {node.name}"
         own.append(_library(f"generated-{node.name}", name, _components(listed)))
         paths = [p for p in records.own_sources(node.program) if node.program.generated not in
                  p.parents]  # fmt: skip
         if paths:
             made = _files(paths, folder)
-            own.append(_users(f"user-{node.name}", f"bodies of the user on {node.name}", made))
+            own.append(_users(f"user-{node.name}", f"bodies of the user {where} {node.name}", made))
     rest = {
         "type": "library",
         "bom-ref": "gnat-rts",

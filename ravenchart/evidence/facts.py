@@ -21,7 +21,7 @@ from ravenchart.building.programs import Program
 from ravenchart.building.stacks import read_record
 from ravenchart.failures import Refused
 from ravenchart.gen.derive.crossing import has_slots
-from ravenchart.gen.emit.program import generate
+from ravenchart.gen.emit.program import generate, library_files
 from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
@@ -52,8 +52,8 @@ class NodeFacts:
 
     @property
     def name(self) -> str:
-        """The name of the node."""
-        return self.program.node
+        """The name of the node, or of the library."""
+        return self.program.node or self.program.checked.system.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +64,8 @@ class Facts:
     """The model as it is here, names of files from its own folder."""
     driver: str
     nodes: tuple[NodeFacts, ...]
+    libraries: tuple[NodeFacts, ...]
+    """The code of each library that the system uses."""
     runtime: tuple[BelievedRecord, ...]
     """Of the runtime and the HAL with this driver; empty where they are missing."""
     reasons: tuple[tuple[str, str], ...]
@@ -80,6 +82,11 @@ class Facts:
     """Records of builds: stacks and memory."""
     coverage: tuple[CountedBody, ...] | None = None
     """The counts of test cases, where a tracefile is given."""
+
+    @property
+    def programs(self) -> tuple[NodeFacts, ...]:
+        """All that is generated: the libraries, and the program of each node."""
+        return (*self.libraries, *self.nodes)
 
 
 def gather(
@@ -104,7 +111,8 @@ def gather(
     programs.check_driver(checked, chosen)
     files, why = _generated(checked)
     made = programs.programs_of(checked)
-    _refuse_foreign(given, made)
+    libraries = [one for used in checked.libraries for one in programs.programs_of(used)]
+    _refuse_foreign(given, [*libraries, *made])
     nodes = tuple(_node(program, chosen, files, why, given) for program in made)
     runtime, reasons = _runtime(chosen, folder)
     sources = tuple((name, file_digest(folder / name)) for name in found.sources)
@@ -112,6 +120,7 @@ def gather(
         checked,
         chosen,
         nodes,
+        tuple(_node(one, chosen, _of_library(one), why, given) for one in libraries),
         runtime,
         tuple(outside_spark.reasons_for_model(folder, slots=has_slots(checked.system)).items()),
         reasons,
@@ -122,6 +131,11 @@ def gather(
         tuple(read_record(one) for one in memory),
         None if coverage is None else tracefile.read(coverage),
     )
+
+
+def _of_library(program: Program) -> dict[str, str]:
+    """The files that a library gives."""
+    return library_files(program.checked.system)
 
 
 def _generated(checked: Checked) -> tuple[dict[str, str], str]:
@@ -155,7 +169,7 @@ def _node(
     """The facts of one program; ``why`` there are no files, where there are none."""
     folder = program.checked.folder
     path = next((one for one in given if records.belongs(one, program)), None)
-    if path is None and given:
+    if path is None and given and program.node:
         path = given[0]  # of another place, or damaged: its problems say so
     if path is None:
         path = records.of_example(program)

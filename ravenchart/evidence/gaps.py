@@ -123,7 +123,7 @@ def _tests(facts: Facts) -> Iterator[Lack]:
 
 
 def _tools(facts: Facts) -> Iterator[Lack]:
-    held = [node.record for node in facts.nodes if node.record is not None]
+    held = [node.record for node in facts.programs if node.record is not None]
     names = [one.name for one in (*held, *facts.runtime) if one.tool == UNKNOWN_TOOL]
     if names:
         told = re.sub(r", ([^,]*)$", r" and \1", ", ".join(dict.fromkeys(names)))

@@ -171,6 +171,9 @@ def belongs(path: Path, program: Program) -> bool:
 def of_example(program: Program) -> Path | None:
     """The record of a program of an example in the checkout, where there is one."""
     folder = Path(os.path.abspath(program.checked.folder))
+    if program.checked.system.is_library:
+        is_one = folder.parent.parent == ROOT / "examples"
+        return of_target(f"{folder.parent.name}-{program.checked.stem}") if is_one else None
     if folder.parent != ROOT / "examples" or program.checked.path.name != "model.yaml":
         return None
     name = f"{folder.name}-{program.folder}" if program.folder else folder.name

@@ -200,12 +200,13 @@ def _units(system: System, link: Link) -> Iterator[DottedName]:
     if link.section == "components":
         component = next((c for c in system.components if c.name == name), None)
         if component is not None:
-            package = component_package(system, component)
+            home = system.home_of(component)
+            package = component_package(home, component)
             inside = str(link.path[3]) if len(link.path) > 3 else ""
             if link.path[2:3] == ("regions",):
                 region = next((r for r in component.regions if r.name == inside), None)
                 if region is not None:
-                    yield region_package(system, component, region)
+                    yield region_package(home, component, region)
             elif link.path[2:3] == ("activities",):
                 flows = {a.name for a in component.activities if a.flow is not None}
                 yield ref(package, FLOWS if inside in flows else ACTIVITIES)

@@ -12,7 +12,7 @@ from .composites import written_out
 from .declared import check_component
 from .deployment import Deployment
 from .findings import Report, UnusableError
-from .model import parted, read
+from .model import generated_name, parted, read
 from .timing import Timing
 
 ALWAYS = (
@@ -34,8 +34,7 @@ def checked(main: Path, generated: Path | None = None) -> Report:
     report = Report()
     model = read(main)
     file, chosen = parted(main)
-    usual = file.name.lower() == "model.yaml"
-    name = "generated" if usual else f"generated-{file.name.removesuffix('.yaml')}"
+    name = generated_name(file)
     folder = main.parent / name / chosen.lower() if generated is None else generated
     try:
         deployment = Deployment(written_out(counted_out(model)))

@@ -31,7 +31,8 @@ def check_component(model: Model, component: str, folder: Path, report: Report) 
     """All charts of a component."""
     form = model.section("components").map(component)
     for name, region in form.map("regions").maps():
-        spec = _spec(folder, f"{model.name}-{component}")
+        root, home = model.home(component, folder)
+        spec = _spec(home, f"{root}-{component}")
         chart = Chart(name, region, form.map("activities"))
         _Comparison(chart, ada.read(spec), spec, report).states()
         path = spec.with_name(f"{spec.stem}-{name.lower()}.ads")

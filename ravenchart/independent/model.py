@@ -124,6 +124,12 @@ class Model:
     digest: str = ""
     top: Mapping = field(default_factory=Mapping)
     """Each section, with the entries of all files."""
+    homes: dict[str, tuple[str, Path]] = field(default_factory=dict)
+    """The library of a component, by its name in lower case, and the folder of its code."""
+
+    def home(self, component: str, program: Path) -> tuple[str, Path]:
+        """The root package of a component, and the folder of its code, given the program's."""
+        return self.homes.get(component.lower(), (self.name, program))
 
     @property
     def name(self) -> str:
@@ -152,6 +158,12 @@ def parted(path: Path) -> tuple[Path, str]:
     return (path.with_name(name), chosen) if is_marked else (path, "")
 
 
+def generated_name(main: Path) -> str:
+    """The folder of the code, beside a main file."""
+    usual = main.name.lower() in ("model.yaml", "library.yaml")
+    return "generated" if usual else f"generated-{main.name.removesuffix('.yaml')}"
+
+
 def read(path: Path) -> Model:
     """A model from its main file, with what that includes, and the file of a deployment."""
     main, chosen = parted(path)
@@ -159,7 +171,7 @@ def read(path: Path) -> Model:
     model.top.file, model.top.line = main, 1
     digest, seen = hashlib.sha256(), set[str]()
 
-    def take(path: Path) -> None:
+    def take(path: Path, library: tuple[str, Path] | None = None) -> None:
         identity = os.path.normpath(os.path.abspath(path))
         if identity in seen:
             return
@@ -174,8 +186,12 @@ def read(path: Path) -> Model:
         if not isinstance(tree, Mapping):
             raise UnusableError(f"{path} is not a mapping")
         _merge(model.top, tree)
+        if tree.text("library"):
+            library = tree.text("library") or "", path.parent / generated_name(path)
+        if library is not None:
+            model.homes |= {name.lower(): library for name in tree.map("components")}
         for name in tree.texts("include"):
-            take(path.parent / name)
+            take(path.parent / name, library)
 
     take(main)
     files = model.top.map("deployments")

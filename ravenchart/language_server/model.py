@@ -77,7 +77,7 @@ def evaluated(path: Path, documents: Open) -> tuple[OpenModel, Evaluation]:
 def checked(path: Path, documents: Open) -> tuple[Diagnostic, ...]:
     """All that `check` finds, the rules of behaviour included."""
     try:
-        found = checking.check(path, read=reader(documents)).diagnostics
+        found = checking.check(path, read=reader(documents), library=True).diagnostics
     except Refused as problem:
         return tuple(one for one in problem.found if isinstance(one, Diagnostic))
     return found

@@ -22,9 +22,9 @@ from ravenchart.paths import ROOT
 from ravenchart.tools import steps
 from ravenchart.tools.kept import file_digest
 
-from . import ages, spark_results, verdicts
+from . import ages, code, spark_results, verdicts
 from . import earlier as proof_cache
-from .spark_results import Results
+from .spark_results import Outside, Results
 from .verdicts import Memcached
 
 
@@ -119,6 +119,7 @@ def prove(
             raise ToolFailed(f"{edited[0]}: error: it was changed during the proof; prove again")
         if failed is None:
             proof_cache.store(key, results)
+    results = replace(results, outside=_with_code(results.outside, inputs))
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
     sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
     proof = Proof(results, sources, ages.tool_text(version), cached)
@@ -175,6 +176,17 @@ def _inputs(folders: Sequence[Path]) -> dict[Path, str]:
 def _is_read(path: Path, results: Results) -> bool:
     """Ada sources by what gnatprove says it read; projects and configuration always."""
     return path.suffix not in (".ads", ".adb") or path.name in results.files
+
+
+def _with_code(outside: Sequence[Outside], inputs: Mapping[Path, str]) -> tuple[Outside, ...]:
+    """The same without units that rename a package: there is nothing to prove in these."""
+    files = {path.name: path for path in inputs}
+    places = ((one, files.get(one.location)) for one in outside)
+    return tuple(
+        one
+        for one, path in places
+        if path is None or not code.is_package_renaming(path.read_bytes())
+    )
 
 
 def _shown(path: Path) -> str:

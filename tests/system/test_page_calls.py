@@ -55,7 +55,7 @@ PAGES, _ = table()
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with copies of all examples, and a model with evidence."""
+    """A folder with copies of all examples and a few models, one of them with evidence."""
     return made_once(tmp_path_factory, "calls of the docs", _make_home)
 
 
@@ -71,6 +71,7 @@ expect:
 
 def _make_home(folder: Path) -> None:
     shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copytree(ROOT / "tests/feature/library", folder / "tests/feature/library")
     for name, wait in (("scenario", "1 s"), ("long", "300 s")):
         path = folder / "examples" / "pump" / f"{name}.yaml"
         path.write_text(SCENARIO.format(wait=wait), encoding="utf-8")

@@ -314,6 +314,43 @@ class SingleTask:
 
 
 @built
+class FunctionRenaming:
+    """``function name return result renames renamed;``: a literal stays static by it."""
+
+    name: str
+    result: DottedName
+    renamed: DottedName
+
+    def __init__(self, name: Named, result: Named, renamed: Named) -> None:
+        self.name = ref(name).text
+        self.result, self.renamed = ref(result), ref(renamed)
+
+
+@built
+class ObjectRenaming:
+    """``name : type renames renamed;``"""
+
+    name: str
+    type: DottedName
+    renamed: DottedName
+
+    def __init__(self, name: Named, type: Named, renamed: Named) -> None:
+        self.name = ref(name).text
+        self.type, self.renamed = ref(type), ref(renamed)
+
+
+@built
+class PackageRenaming:
+    """``package name renames renamed;``: a unit of its own."""
+
+    name: DottedName
+    renamed: DottedName
+
+    def __init__(self, name: Named, renamed: Named) -> None:
+        self.name, self.renamed = ref(name), ref(renamed)
+
+
+@built
 class UseType:
     """``use type name;``"""
 
@@ -341,6 +378,8 @@ Decl = (
     | Package
     | Protected
     | SingleTask
+    | FunctionRenaming
+    | ObjectRenaming
     | UseType
     | UsePackage
     | Pragma
@@ -356,7 +395,7 @@ class Unit:
 
     header: str
     withs: tuple[DottedName, ...]
-    item: Package | Subprogram | GenericInstance
+    item: Package | Subprogram | GenericInstance | PackageRenaming
 
     @property
     def name(self) -> DottedName:

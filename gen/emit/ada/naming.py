@@ -93,6 +93,22 @@ def unit_type(system: System, unit: str | None) -> DottedName:
     return ref(ada_case(system.name), _unit_names(system.units)[unit])
 
 
+def counted_in(system: System, of_type: IntegerType) -> DottedName:
+    """The Ada type that declares what a type counts in: its unit's, in the library of the type."""
+    return declared_unit(system.library_of(of_type) or system, of_type.unit)
+
+
+def declared_unit(system: System, unit: str | None) -> DottedName:
+    """The type that the name `unit_type` stands for: the first library that has it declares it."""
+    library = library_of_unit(system, unit)
+    return unit_type(system, unit) if library is None else declared_unit(library, unit)
+
+
+def library_of_unit(system: System, unit: str | None) -> System | None:
+    """The library from which a system has the type of a unit; None where that is its own."""
+    return next((one for one in system.libraries if unit in one.units), None)
+
+
 def type_name(system: System, of_type: Type) -> DottedName:
     """The expanded name of a model type, visible from every generated unit."""
     if of_type == BOOLEAN:

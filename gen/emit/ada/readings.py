@@ -16,8 +16,10 @@ from typing import NamedTuple
 from .declarations import (
     Decl,
     EnumType,
+    FunctionRenaming,
     GenericInstance,
     Object,
+    ObjectRenaming,
     Package,
     RecordComponent,
     RecordDeclaration,
@@ -70,7 +72,9 @@ def _names(item: Decl) -> Iterator[_Name]:
             yield _Name(name)
             #  a literal is a function without parameters
             yield from (_Name(i, (ref(name),)) for i in literals)
-        case TypeDeclaration(name) | RecordDeclaration(name) | Object(name):
+        case FunctionRenaming(name, result):
+            yield _Name(name, (result,))
+        case TypeDeclaration(name) | RecordDeclaration(name) | Object(name) | ObjectRenaming(name):
             yield _Name(name)
         case SubtypeDeclaration(name) | GenericInstance(name):
             yield _Name(name, behind_package=item.behind_package)

@@ -21,11 +21,14 @@ from .declarations import (
     Definition,
     DerivedDefinition,
     EnumType,
+    FunctionRenaming,
     GenericInstance,
     IndexConstrained,
     ModularDefinition,
     Object,
+    ObjectRenaming,
     Package,
+    PackageRenaming,
     Param,
     Protected,
     RangeDefinition,
@@ -271,7 +274,7 @@ def _object(decl: Object) -> Doc:
     return group(*start, _aspects(decl.aspects) if decl.aspects else "", ";")
 
 
-def _declaration(decl: Decl) -> Doc:
+def _declaration(decl: Decl | PackageRenaming) -> Doc:
     match decl:
         case EnumType():
             return _enumeration(decl)
@@ -297,6 +300,8 @@ def _declaration(decl: Decl) -> Doc:
             return group(head, nest(SOFT, argument_layout([argument(a) for a in args]), by=2), ";")
         case Package() | Protected() | SingleTask():
             return _enclosing(decl)
+        case FunctionRenaming() | ObjectRenaming() | PackageRenaming():
+            return _renaming(decl)
         case UseType(name) | UsePackage(name):
             return f"use {'type ' if isinstance(decl, UseType) else ''}{name.text};"
         case Pragma(name, args):
@@ -362,6 +367,17 @@ def _subtype(decl: Subtype | Definition) -> list[str]:
     return [flat(decl)]
 
 
+def _renaming(decl: FunctionRenaming | ObjectRenaming | PackageRenaming) -> Doc:
+    match decl:
+        case FunctionRenaming(name, result):
+            head = f"function {name} return {result.text}"
+        case ObjectRenaming(name, of_type):
+            head = f"{name} : {of_type.text}"
+        case PackageRenaming(package):
+            head = f"package {package.text}"
+    return group(head, nest(SOFT, f"renames {decl.renamed.text};", by=2))
+
+
 def _is(head: str, pieces: Sequence[str], aspects: Sequence[Aspect] = ()) -> Doc:
     """The declaration of a type."""
     base = nest(SOFT, pieces[0], *(cat(SOFT, piece) for piece in pieces[1:]), by=2)
@@ -371,7 +387,7 @@ def _is(head: str, pieces: Sequence[str], aspects: Sequence[Aspect] = ()) -> Doc
 
 
 _TYPES = (TypeDeclaration, SubtypeDeclaration)
-_TIGHT = (_TYPES, Object, UseType, Pragma)
+_TIGHT = (_TYPES, Object, FunctionRenaming, UseType, Pragma)
 """No blank line separates two declarations of one of these kinds."""
 
 
@@ -432,8 +448,14 @@ _NEWER = Pragma("Ada_2022")
 _OF_ARRAYS = Pragma("Warnings", (ref("Off"), StringLiteral("*array aggregate using*")))
 
 
+_IN_SPARK = Pragma("SPARK_Mode")
+"""For a renaming, which has no aspect of that name."""
+
+
 def _language(unit: Unit) -> tuple[Pragma, ...]:
-    """The pragmas that static functions or delta aggregates in a unit ask for."""
+    """The pragmas that static functions, delta aggregates or a renaming ask for."""
+    if isinstance(unit.item, PackageRenaming):
+        return (_IN_SPARK,)
     changing = False
     for node in nodes_in(unit.item):
         if isinstance(node, Aspect) and node.name == "Static":

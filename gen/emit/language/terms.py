@@ -23,7 +23,15 @@ from ravenchart.gen.emit.ada.expressions import (
     select,
 )
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
-from ravenchart.gen.emit.ada.naming import NUMBER, ada_case, counted, type_name, unit_type
+from ravenchart.gen.emit.ada.naming import (
+    NUMBER,
+    ada_case,
+    counted,
+    counted_in,
+    declared_unit,
+    type_name,
+    unit_type,
+)
 from ravenchart.gen.emit.ada.statements import Assign, IfStatement, Stmt, do
 from ravenchart.gen.language import terms as m
 from ravenchart.gen.model.component import Component
@@ -61,11 +69,7 @@ def unit_of(expression: m.Expression) -> str | None:
         case m.Operation():
             return expression.unit
         case m.Name(_, _, field, of_type):
-            scalar = (
-                of_type.field(field).type
-                if isinstance(of_type, m.RecordType) and field
-                else of_type
-            )
+            scalar = _scalar_in(of_type, field)
             return scalar.unit if isinstance(scalar, m.IntegerType) else None
         case _:
             return None
@@ -124,11 +128,7 @@ def _is_plain(operand: m.Expression) -> bool:
             #  a choice between literals is of no type of its own
             return operator in ("min", "max", "clamp") or any(map(_is_plain, operands))
         case m.Name(_, _, field, of_type):
-            scalar = (
-                of_type.field(field).type
-                if isinstance(of_type, m.RecordType) and field
-                else of_type
-            )
+            scalar = _scalar_in(of_type, field)
             return isinstance(scalar, m.IntegerType) and scalar.unit is None
         case _:
             return False
@@ -221,11 +221,12 @@ def emit_expression(scope: Scope, expression: m.Expression, unit: str | None = N
             return _literal(scope, value, of_type, unit)
         case m.Name(m.Reading.OLD, name, field):
             before = old(ref(scope.variable(name)))
-            return before if field is None else select(before, ada_case(field))
+            whole = before if field is None else select(before, ada_case(field))
+            return _counted_here(scope, expression, whole)
         case m.Name(m.Reading.SENT, name):
             return ref(scope.sent(name)[1])
         case m.Name():
-            return _name(scope, expression)
+            return _counted_here(scope, expression, _name(scope, expression))
         case m.PortTest(port, state):
             view = scope.variable(port)
             return OperatorChain("=", (ref(view, "State"), ref("Ravenchart", ada_case(state))))
@@ -251,6 +252,33 @@ def _name(scope: Scope, name: m.Name) -> DottedName:
         return ref("Item", field_of(of_type), *fields)
     value = ["Value"] if name.kind is m.Reading.PORT else []
     return ref(scope.variable(name.name), *value, *fields)
+
+
+def _counted_here(scope: Scope, name: m.Name, value: Expr) -> Expr:
+    """A value as the system counts it: a library may have another Ada type for the same unit."""
+    scalar = _scalar_in(name.type, name.field)
+    if not isinstance(scalar, m.IntegerType) or not _is_foreign(scope.system, scalar):
+        return value
+    return call(unit_type(scope.system, scalar.unit), value)
+
+
+def _fitting(scope: Scope, target: m.Type, field: str | None, value: m.Expression) -> Expr:
+    """An expression for a target, or a field of one, in the target's own Ada type."""
+    scalar = _scalar_in(target, field)
+    made = emit_expression(scope, value, _unit_in(target, field))
+    if not isinstance(scalar, m.IntegerType) or not _is_foreign(scope.system, scalar):
+        return made
+    return call(type_name(scope.system, scalar), made)
+
+
+def _is_foreign(system: System, of_type: m.IntegerType) -> bool:
+    """Whether the values of a library's type are of another Ada type than the system's."""
+    return counted_in(system, of_type) != declared_unit(system, of_type.unit)
+
+
+def _scalar_in(of_type: m.Type, field: str | None) -> m.Type:
+    """The type of a value, or of a field of it."""
+    return of_type.field(field).type if isinstance(of_type, m.RecordType) and field else of_type
 
 
 def _in_state(scope: Scope, region_name: str, state: str) -> Expr:
@@ -307,7 +335,7 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
         case m.Set(_, data, field, value):
             target = ref(scope.target(data), *([ada_case(field)] if field else []))
             item = next(d.type for d in scope.component.data if d.name == data)
-            return (Assign(target, emit_expression(scope, value, _unit_in(item, field))),)
+            return (Assign(target, _fitting(scope, item, field, value)),)
         case m.Send(_, port, values):
             slot, flag = scope.sent(port)
             if scope.component.port(port).is_void:
@@ -324,7 +352,7 @@ def _action(scope: Scope, action: m.Action) -> tuple[Stmt, ...]:
 
 def _unit_in(of_type: m.Type, field: str | None) -> str | None:
     """The unit of a target."""
-    scalar = of_type.field(field).type if isinstance(of_type, m.RecordType) and field else of_type
+    scalar = _scalar_in(of_type, field)
     return scalar.unit if isinstance(scalar, m.IntegerType) else None
 
 
@@ -333,12 +361,9 @@ def _given(
 ) -> Expr:
     """The value that a send or raise gives."""
     if not isinstance(of_type, m.RecordType):
-        return emit_expression(scope, values[0][1], _unit_in(of_type, None))
+        return _fitting(scope, of_type, None, values[0][1])
     return Aggregate(
-        tuple(
-            Arg(ada_case(f or ""), emit_expression(scope, v, _unit_in(of_type, f)))
-            for f, v in values
-        ),
+        tuple(Arg(ada_case(f or ""), _fitting(scope, of_type, f, v)) for f, v in values),
         type_name(scope.system, of_type),
     )
 

@@ -139,6 +139,11 @@ def trace_json(system: System) -> str:
             row["unit"] = item.unit
         rows.append(row)
     document: dict[str, object] = {"system": system.name, "digest": system.digest}
+    if system.libraries:
+        document["libraries"] = [
+            {"name": one.name, "version": one.version, "digest": one.digest}
+            for one in system.libraries
+        ]
     if system.most_cores > 1:
         document["cores"] = system.most_cores
     document["elements"] = rows

@@ -98,6 +98,12 @@ def test_a_value_that_the_model_has_already_is_refused() -> None:
 OF_EXAMPLES = {
     **{one: ROOT / Path(one.page).parent for one in LISTINGS if one.page.startswith("examples/")},
     one_of("docs/devices.md", "time_limit: 60 ms"): ROOT / "tests" / "nodes" / "commands",
+    one_of("docs/libraries.md", "library: Blocks"): ROOT
+    / "tests"
+    / "feature"
+    / "library"
+    / "blocks",
+    one_of("docs/libraries.md", "smoother:"): ROOT / "tests" / "feature" / "library",
 }
 """Parts that stand in a model of the repository, which other tests check."""
 
@@ -105,7 +111,7 @@ OF_EXAMPLES = {
 @pytest.mark.parametrize(("part", "folder"), OF_EXAMPLES.items(), ids=map(ids, OF_EXAMPLES))
 def test_a_part_of_an_example_stands_there(part: Listing, folder: Path) -> None:
     wanted = tree_of(part.text, part.page)
-    trees = [tree_of(path.read_text(), path.name) for path in sorted(folder.glob("*.yaml"))]
+    trees = [tree_of(path.read_text(), path.name) for path in sorted(folder.rglob("*.yaml"))]
     assert any(has(node, wanted) for tree in trees for node in mappings(tree))
 
 

@@ -2,14 +2,8 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
-with Ravenchart.Port_Regions;
+pragma SPARK_Mode;
 
-package Autopilot.Air_Probe
-with SPARK_Mode
-is
-   --  [Air_Probe.raw] the view that its readers have
-   package Raw_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Air, Default => Autopilot.Default_Air);
+with Triplex.Air_Probe;
 
-   subtype Raw_View is Raw_Port.Port;
-end Autopilot.Air_Probe;
+package Autopilot.Air_Probe renames Triplex.Air_Probe;

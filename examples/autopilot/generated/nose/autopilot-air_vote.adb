@@ -3,7 +3,6 @@
 --  of the model; trace.json has their locations.
 
 with Autopilot.Air_Voter;
-with Autopilot.Air_Voter.Flows;
 with Autopilot.Backup;
 with Autopilot.Flight;
 with Autopilot.Health_Counts;
@@ -14,6 +13,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
+with Triplex.Air_Voter.Flows;
 
 package body Autopilot.Air_Vote
 with SPARK_Mode

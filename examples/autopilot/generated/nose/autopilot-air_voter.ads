@@ -2,26 +2,8 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
-with Ravenchart.Port_Regions;
+pragma SPARK_Mode;
 
-package Autopilot.Air_Voter
-with SPARK_Mode
-is
-   --  [Air_Voter.air_1] the view that its readers have
-   package Air_1_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Air, Default => Autopilot.Default_Air);
+with Triplex.Air_Voter;
 
-   subtype Air_1_View is Air_1_Port.Port;
-
-   --  [Air_Voter.air_2] the view that its readers have
-   package Air_2_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Air, Default => Autopilot.Default_Air);
-
-   subtype Air_2_View is Air_2_Port.Port;
-
-   --  [Air_Voter.air_3] the view that its readers have
-   package Air_3_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Air, Default => Autopilot.Default_Air);
-
-   subtype Air_3_View is Air_3_Port.Port;
-end Autopilot.Air_Voter;
+package Autopilot.Air_Voter renames Triplex.Air_Voter;

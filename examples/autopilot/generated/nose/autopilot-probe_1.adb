@@ -3,7 +3,6 @@
 --  of the model; trace.json has their locations.
 
 with Autopilot.Air_Probe;
-with Autopilot.Air_Probe.Flows;
 with Autopilot.Air_Vote;
 with Autopilot.Health_Counts;
 with Autopilot.Trace;
@@ -13,6 +12,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
+with Triplex.Air_Probe.Flows;
 
 package body Autopilot.Probe_1
 with SPARK_Mode

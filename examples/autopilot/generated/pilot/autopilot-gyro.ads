@@ -2,14 +2,8 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
-with Ravenchart.Port_Regions;
+pragma SPARK_Mode;
 
-package Autopilot.Gyro
-with SPARK_Mode
-is
-   --  [Gyro.raw] the view that its readers have
-   package Raw_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Turn, Default => Autopilot.Default_Turn);
+with Triplex.Gyro;
 
-   subtype Raw_View is Raw_Port.Port;
-end Autopilot.Gyro;
+package Autopilot.Gyro renames Triplex.Gyro;

@@ -3,7 +3,6 @@
 --  of the model; trace.json has their locations.
 
 with Autopilot.Gyro;
-with Autopilot.Gyro.Flows;
 with Autopilot.Gyro_Vote;
 with Autopilot.Health_Counts;
 with Autopilot.Trace;
@@ -13,6 +12,7 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
+with Triplex.Gyro.Flows;
 
 package body Autopilot.Gyro_3
 with SPARK_Mode

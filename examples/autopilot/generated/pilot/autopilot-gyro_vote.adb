@@ -4,8 +4,6 @@
 
 with Autopilot.Crossings;
 with Autopilot.Gyro_Voter;
-with Autopilot.Gyro_Voter.Flows;
-with Autopilot.Gyro_Voter.Gyros;
 with Autopilot.Health_Counts;
 with Autopilot.Timing_Certificate;
 with Autopilot.Trace;
@@ -16,6 +14,8 @@ with Ravenchart.Queueing;
 with Ravenchart.Queues;
 with Ravenchart.Traces;
 with System;
+with Triplex.Gyro_Voter.Flows;
+with Triplex.Gyro_Voter.Gyros;
 
 package body Autopilot.Gyro_Vote
 with SPARK_Mode

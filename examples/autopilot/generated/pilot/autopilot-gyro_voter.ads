@@ -2,39 +2,8 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
-with Ravenchart.Port_Regions;
+pragma SPARK_Mode;
 
-package Autopilot.Gyro_Voter
-with SPARK_Mode
-is
-   --  [Gyro_Voter.Gyros.states]
-   package Gyros_States is
-      type Leaf is
-        (Blind,  --  [Blind] sensing.yaml:81
-         Three,  --  [Three] sensing.yaml:85
-         Two,    --  [Two] sensing.yaml:86
-         One     --  [One] sensing.yaml:87
-        );
+with Triplex.Gyro_Voter;
 
-      --  [Voting] sensing.yaml:82
-      subtype Voting is Leaf range Three .. One;
-   end Gyros_States;
-
-   --  [Gyro_Voter.rates_1] the view that its readers have
-   package Rates_1_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Turn, Default => Autopilot.Default_Turn);
-
-   subtype Rates_1_View is Rates_1_Port.Port;
-
-   --  [Gyro_Voter.rates_2] the view that its readers have
-   package Rates_2_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Turn, Default => Autopilot.Default_Turn);
-
-   subtype Rates_2_View is Rates_2_Port.Port;
-
-   --  [Gyro_Voter.rates_3] the view that its readers have
-   package Rates_3_Port is new Ravenchart.Port_Regions
-     (Value_Type => Autopilot.Turn, Default => Autopilot.Default_Turn);
-
-   subtype Rates_3_View is Rates_3_Port.Port;
-end Autopilot.Gyro_Voter;
+package Autopilot.Gyro_Voter renames Triplex.Gyro_Voter;

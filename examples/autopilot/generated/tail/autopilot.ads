@@ -2,31 +2,28 @@
 --  change the model and generate again. Names in brackets are elements
 --  of the model; trace.json has their locations.
 
+with Triplex;
 with Ravenchart;
 
 package Autopilot
 with SPARK_Mode, Pure
 is
-   subtype Rate is
-     Ravenchart.Number
-     range Ravenchart.Number'Val (-30_000)
-     .. 30_000;
+   pragma Warnings (Off, "use clause for type*");
+
+   subtype Rate is Triplex.Rate;
+   subtype Speed is Triplex.Speed;
+   subtype Height is Triplex.Height;
+   subtype Count is Triplex.Count;
    subtype Angle is
      Ravenchart.Number
      range Ravenchart.Number'Val (-18_000)
      .. 18_000;
-   subtype Speed is Ravenchart.Number range 0 .. 30_000;
-   subtype Height is
-     Ravenchart.Number
-     range Ravenchart.Number'Val (-50_000)
-     .. 500_000;
    subtype Deflection is
      Ravenchart.Number
      range Ravenchart.Number'Val (-4_500)
      .. 4_500;
    subtype Thrust is Ravenchart.Number range 0 .. 1_000;
    subtype Charge is Ravenchart.Number range 0 .. 1_000;
-   subtype Count is Ravenchart.Number range 0 .. 3;
    subtype Beat is Ravenchart.Number range 0 .. 255;
 
    type Axis is (Roll, Pitch, Yaw);
@@ -56,14 +53,17 @@ is
      range Ravenchart.Number'Val (-10_000_000)
      .. 10_000_000;
    subtype Leg is Ravenchart.Number range 0 .. 3;
+   subtype Turn is Triplex.Turn;
 
-   type Turn is record
-      Roll  : Autopilot.Rate;
-      Pitch : Autopilot.Rate;
-      Yaw   : Autopilot.Rate;
-   end record;
+   use type Triplex.Turn;
 
-   Default_Turn : constant Turn := (Roll => 0, Pitch => 0, Yaw => 0);
+   Default_Turn : Turn renames Triplex.Default_Turn;
+
+   subtype Air is Triplex.Air;
+
+   use type Triplex.Air;
+
+   Default_Air : Air renames Triplex.Default_Air;
 
    type Attitude is record
       Roll    : Autopilot.Angle;
@@ -73,13 +73,6 @@ is
 
    Default_Attitude : constant Attitude :=
      (Roll => 0, Pitch => 0, Heading => 0);
-
-   type Air is record
-      Speed  : Autopilot.Speed;
-      Height : Autopilot.Height;
-   end record;
-
-   Default_Air : constant Air := (Speed => 0, Height => 0);
 
    type Stick is record
       Roll   : Autopilot.Deflection;
