@@ -17,7 +17,7 @@ from ravenchart.gen.emit.ada.declarations import Package, PackageRenaming, Unit
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import RUNTIME, ada_case, root_package
 from ravenchart.gen.emit.ada.readings import UnitReading, readings
-from ravenchart.gen.emit.ada.text import PrintedItem, print_item, print_unit
+from ravenchart.gen.emit.ada.text import OF_PREFIXES, PrintedItem, print_item, print_unit
 from ravenchart.gen.emit.ada.walking import named_units
 from ravenchart.gen.emit.buses.authentication import (
     authenticated,
@@ -48,6 +48,7 @@ from ravenchart.gen.emit.language.libraries import (
     emitted_components,
     in_libraries,
     library_units,
+    only_prefixes,
 )
 from ravenchart.gen.emit.language.quiet import (
     DecidedStates,
@@ -103,6 +104,8 @@ class MadeUnit:
     unit: Unit
     item: PrintedItem
     reading: UnitReading
+    prefixes: frozenset[DottedName] = frozenset()
+    """Renamed packages of libraries that are only parts of names in it: see `only_prefixes`."""
 
 
 class _Maker:
@@ -161,9 +164,10 @@ class _Maker:
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
         left = [_pruned(unit, root_package(self.system)) for unit in found]
-        left = left if self.whole else [_context(unit) for unit in left]
         left = [in_libraries(unit, self.system) for unit in left]
-        return [MadeUnit(u, t, r) for u, t, r in zip(left, texts, read, strict=True)]
+        prefixes = [only_prefixes(unit, self.system) for unit in left]
+        left = left if self.whole else [_context(unit) for unit in left]
+        return [MadeUnit(*parts) for parts in zip(left, texts, read, prefixes, strict=True)]
 
 
 def program(
@@ -312,7 +316,14 @@ def _without_repeats(found: list[Unit]) -> list[Unit]:
 def _printed(found: Sequence[MadeUnit]) -> dict[str, str]:
     pruned = _without_repeats([made.unit for made in found])
     pairs = zip(pruned, found, strict=True)
-    return {unit.file_name: print_unit(unit, made.item) for unit, made in pairs}
+    return {unit.file_name: print_unit(unit, _item(unit, made)) for unit, made in pairs}
+
+
+def _item(unit: Unit, made: MadeUnit) -> PrintedItem:
+    """A unit's text, without a warning about context clauses that only prefixes need."""
+    if made.prefixes.isdisjoint(unit.withs):
+        return made.item
+    return replace(made.item, pragmas=(*made.item.pragmas, OF_PREFIXES))
 
 
 def generate(system: System, claims: Claims) -> dict[str, str]:

@@ -94,11 +94,7 @@ def _written(checked: Checked) -> Written:
     without_clashes(checked)
     folder = checked.generated
     folder.mkdir(parents=True, exist_ok=True)
-    files = (
-        library_files(checked.system)
-        if checked.system.is_library
-        else generate(checked.system, claims(checked))
-    )
+    files = texts_of(checked)
     old = listed_in(folder)
     edited = tuple(n for n, digest in old.items() if _edited(folder / n, digest, files.get(n)))
     for name in edited:
@@ -130,6 +126,13 @@ def _written(checked: Checked) -> Written:
         _digest(listed.encode("utf-8")),
         {checked.folder / name: digest for name, digest in user.items()},
     )
+
+
+def texts_of(checked: Checked) -> dict[str, str]:
+    """File name to text of all that is generated of a model or a library, in memory."""
+    if checked.system.is_library:
+        return library_files(checked.system)
+    return generate(checked.system, claims(checked))
 
 
 def _edited(path: Path, digest: str, text: str | None) -> bool:

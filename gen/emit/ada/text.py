@@ -448,6 +448,8 @@ _NEWER = Pragma("Ada_2022")
 _OF_ARRAYS = Pragma("Warnings", (ref("Off"), StringLiteral("*array aggregate using*")))
 
 
+OF_PREFIXES = Pragma("Warnings", (ref("Off"), StringLiteral("no entities of*")))
+"""For a renamed package that is only a prefix: the compiler takes it for unused."""
 _IN_SPARK = Pragma("SPARK_Mode")
 """For a renaming, which has no aspect of that name."""
 

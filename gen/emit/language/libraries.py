@@ -11,12 +11,13 @@ So no other unit knows which component a library declares.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import replace
 
 from ravenchart.gen.emit.ada.declarations import PackageRenaming, Unit
 from ravenchart.gen.emit.ada.named import DottedName, ref
 from ravenchart.gen.emit.ada.naming import component_package, library_of_unit
+from ravenchart.gen.emit.ada.walking import names_in
 from ravenchart.gen.language.terms import IntegerType, Type
 from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.system import System
@@ -66,3 +67,21 @@ def in_libraries(unit: Unit, system: System) -> Unit:
     changed = tuple(found) != unit.withs
     withs = sorted(found, key=lambda name: name.text.lower()) if changed else unit.withs
     return replace(unit, withs=tuple(withs))
+
+
+def only_prefixes(unit: Unit, system: System) -> frozenset[DottedName]:
+    """Renamed packages in the context of a unit that only stand before the names of children."""
+    renamed = _renamed(system) if system.libraries else {}
+    idle = set(renamed) & set(unit.withs)
+    for package in tuple(idle):
+        children = {n.parts[2] for n in unit.withs if n.parts[:2] == renamed[package].parts}
+        if any(_is_in_itself(name, package, children) for name in names_in(unit.item)):
+            idle.remove(package)
+    return frozenset(idle)
+
+
+def _is_in_itself(name: DottedName, package: DottedName, children: Set[str]) -> bool:
+    """Whether a name is that of a declaration in a package, not in a child of it."""
+    root, own = package.parts
+    parts = name.parts[1:] if name.first == root else name.parts
+    return parts[:1] == (own,) and (len(parts) == 1 or parts[1] not in children)
