@@ -41,7 +41,7 @@ def add_sources(sub: argparse.ArgumentParser) -> None:
     common.add_driver(sub)
     sub.add_argument(
         "--record", type=Path, metavar="FILE", action="append", default=[],
-        help="the proof record that `prove --record` wrote; for several nodes, once for each",
+        help="the proof record that `prove --record` wrote; once for each node and library",
     )  # fmt: skip
     sub.add_argument(
         "--memory", type=Path, metavar="FILE", action="append", default=[],

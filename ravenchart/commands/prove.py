@@ -39,8 +39,8 @@ def add_arguments(sub: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     sub.add_argument(
         "--record", type=Path, metavar="FILE",
-        help="write the proof record to this file; with several nodes, to FILE with each node's "
-        "name behind its own",
+        help="write the proof record to this file; with several nodes or with libraries, one for "
+        "each, to FILE with the name of the node or library behind its own",
     )  # fmt: skip
 
 
