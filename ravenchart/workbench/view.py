@@ -22,6 +22,7 @@ from ravenchart.analysis.units import TENTH, microseconds
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
 from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
+from ravenchart.editing.tables import copies_of
 from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
@@ -131,24 +132,33 @@ def _declared(where: _Where, row: DeclaredRow) -> Json:
 
 
 def _processors(where: _Where, good: Analysis, saved: Analysis) -> Iterator[Json]:
-    """The processors in the order of the model, each with its table."""
+    """The processors in the order of the model, each with its table.
+
+    One of a bus that several nodes join has a task on each of them: its ``copies``.
+    """
     by_name = {one.name.lower(): one for one in good.system.processors}
     responses = {row.row.name.lower(): row.bound for _, row in good.rows()}
     slots = {slot.element.lower(): slot.timing for slot in good.system.slots}
     for entry in where.places.processors.values():
-        processor = by_name.get(entry.name.lower())
-        written = {key: _written(entry, key) for key in ("period", "deadline", "priority")}
+        own = by_name.get(entry.name.lower())
+        copies = [] if own is not None else copies_of(good.system.processors, entry.name)
+        one = next(iter(copies), own)
+        levels = {copy.priority for copy in copies}
         yield {
             "name": entry.name,
             **where.at(entry.file, entry.key),
-            "node": _written(entry, "node") if processor is None else processor.node,
+            "node": _written(entry, "node") if own is None else own.node,
             "released_by": _written(entry, "released_by"),
-            "core": None if processor is None else processor.core,
-            "written": written,
-            "period": None if processor is None else shown(processor.period),
-            "deadline": None if processor is None else shown(processor.deadline),
-            "priority": None if processor is None else processor.priority,
-            **(_response(good, saved, entry.name) if processor is not None else {"bound": None}),
+            "core": None if own is None else own.core,
+            "written": {key: _written(entry, key) for key in ("period", "deadline", "priority")},
+            "period": None if one is None else shown(one.period),
+            "deadline": None if one is None else shown(one.deadline),
+            "priority": None if one is None or len(levels) > 1 else one.priority,
+            **(_response(good, saved, own.name) if own is not None else {"bound": None}),
+            "copies": [
+                {"node": copy.node, "priority": copy.priority, **_response(good, saved, copy.name)}
+                for copy in copies
+            ],
             "rows": [
                 _row(where, entry, one, responses, slots) for one in where.places.table(entry)
             ],

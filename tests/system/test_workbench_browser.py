@@ -141,6 +141,35 @@ def test_a_stream_is_the_last_response_and_has_nothing_to_change(
         pane.closed(bench.address)
 
 
+def test_a_processor_that_is_on_several_nodes_has_a_bar_on_each(browser: Browser) -> None:
+    with running(ROOT / "examples" / "two_nodes" / "model.yaml") as bench:
+        pane = Pane(browser, bench.address)
+        reception = pane.page.locator('[data-processor="reception"]')
+        for node in ("panel", "drive"):
+            copy = reception.locator(f'[data-node="{node}"]')
+            expect(copy).to_contain_text(re.compile(rf"^on {node}, priority \d+ok"))
+            expect(copy.locator(".number")).to_have_text(re.compile(r"^R \d+ us of 1 ms$"))
+            expect(copy.locator(".bar .part.own")).to_be_visible()
+        assert serious(pane.page) == []
+        first, second = pane.page.evaluate(FIRST_CHARACTERS)
+        assert first < second  # `/` is in front of the path, though its end is what stays
+        pane.closed(bench.address)
+
+
+FIRST_CHARACTERS = """() => {
+  const model = document.querySelector("header .model");
+  const text = document.createTreeWalker(model, NodeFilter.SHOW_TEXT).nextNode();
+  const left = (place) => {
+    const range = document.createRange();
+    range.setStart(text, place);
+    range.setEnd(text, place + 1);
+    return range.getBoundingClientRect().left;
+  };
+  return [left(0), left(1)];
+}"""
+"""How far to the right the first two characters of the model's path are."""
+
+
 def test_a_row_is_moved_by_keys_and_keeps_the_focus(pane: Pane) -> None:
     page = pane.page
     row = "joint_x.Monitoring"

@@ -106,7 +106,7 @@ function App() {
 
 function Header({ quietly, save, setTab }) {
   return html`<${Bench.Consumer}>${({ state }) => html`<header>
-    <h1>${state.system}</h1><span class="remark model">${state.model}</span>
+    <h1>${state.system}</h1><span class="remark model"><bdi>${state.model}</bdi></span>
     <button class="verdict ${state.met ? "ok" : "bad"}" onClick=${() => setTab("findings")}
       ><span aria-live="polite">${state.verdict.replace(`${state.system}: `, "")}</span></button>
     <span class="gap"></span>

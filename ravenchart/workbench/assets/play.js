@@ -61,7 +61,7 @@ function App() {
   const send = (message) => link.current.act(message); // whoever asks shows what is refused
   return html`<${Bench.Provider} value=${{ state, act, send, chart }}>
     <header>
-      <h1>${state.system}</h1><span class="remark model">${state.model}</span>
+      <h1>${state.system}</h1><span class="remark model"><bdi>${state.model}</bdi></span>
       <span class="clock number" role="status">${state.now === null ? "not started" : `executed up to ${state.now}`}</span>
       <span class="remark number">next release ${state.next}</span>
       ${busy > 0 && html`<span class="busy remark">executing …</span>`}

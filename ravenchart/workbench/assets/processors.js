@@ -67,11 +67,12 @@ function Processor({ of, drop, setDrop }) {
     act({ kind: "move", row, to: of.name, place: target }).catch(() => {});
   }
 
-  return html`<article class="processor ${of.met === false ? "missed" : ""}" data-processor=${of.name}
+  const missed = [of, ...of.copies].some((one) => one.met === false);
+  return html`<article class="processor ${missed ? "missed" : ""}" data-processor=${of.name}
       onDragOver=${over} onDrop=${dropped}
       onDragLeave=${(event) => !event.currentTarget.contains(event.relatedTarget) && setDrop(null)}>
     <h3><${Place} at=${of} label=${of.name}>${of.name}<//>
-      <span class="remark"> ${of.node ?? ""}${of.released_by ? `, on ${of.released_by}` : ""}</span>
+      <span class="remark"> ${[of.node, of.released_by && `on ${of.released_by}`].filter(Boolean).join(", ")}</span>
       ${of.met !== undefined && html`<${Word} met=${of.met} text=${of.word} />`}</h3>
     <div class="settings">
       <${Field} label="Period" hidden=${false} value=${of.written.period} follows=${of.period} optional
@@ -82,6 +83,9 @@ function Processor({ of, drop, setDrop }) {
         width="7" send=${set("deadline")} />
     </div>
     ${of.limit !== undefined && html`<${Response} of=${of} />`}
+    ${of.copies.map((one) => html`<div key=${one.node} class="copy" data-node=${one.node}>
+      <span class="remark">on ${one.node}, priority ${one.priority}</span><${Word} met=${one.met} text=${one.word} />
+      <${Response} of=${one} /></div>`)}
     <ol ref=${list} aria-label="Activities of ${of.name}">
       ${of.rows.map((row, number) => html`<${Row} key=${row.row} row=${row} number=${number} of=${of}
         mark=${here === number} setDrop=${setDrop} processors=${state.processors} />`)}

@@ -27,9 +27,14 @@ Figures = dict[str, Any]
 @pytest.fixture
 def session(tmp_path: Path) -> Session:
     """The robot under change."""
-    for path in (ROOT / "examples" / "cartesian_robot").glob("*.yaml"):
-        shutil.copy(path, tmp_path)
-    return Session(tmp_path / "model.yaml")
+    return Session(copied("cartesian_robot", tmp_path))
+
+
+def copied(example: str, folder: Path) -> Path:
+    """The model of an example, in a folder of its own."""
+    for path in (ROOT / "examples" / example).glob("*.yaml"):
+        shutil.copy(path, folder)
+    return folder / "model.yaml"
 
 
 def moved(session: Session) -> bool:
@@ -148,3 +153,27 @@ def test_a_stream_is_a_row_of_the_page_that_follows_each_change(tmp_path: Path) 
 
 def test_without_a_stream_the_page_has_no_row_for_one(session: Session) -> None:
     assert whole_view(session)["streams"] == []
+
+
+def test_a_processor_that_is_on_several_nodes_has_a_response_on_each(
+    tmp_path: Path, capsys: PRINTED
+) -> None:
+    """It stands once in the text, and the analysis has a task of it on each node."""
+    session = Session(copied("two_nodes", tmp_path))
+    before = {one["node"]: one["bound"] for one in reception(session)["copies"]}
+    answer = answered(capsys, "analyse", session.path, status=0)
+    tasks = {one["task"]: one["response"] for one in answer["tasks"]}
+    assert before == {node: tasks[f"reception_{node}"] for node in ("panel", "drive")}
+    wish = {"kind": "time", "row": "link.receive", "key": "wcet", "value": "90 us", "number": 0}
+    assert session.change(SetTime.model_validate(wish))
+    after = reception(session)
+    assert after["deadline"] == "1 ms" and after["bound"] is None
+    for one in after["copies"]:
+        assert one["bound"] > one["saved"] == before[one["node"]] and one["met"]
+    assert all(one["copies"] == [] for one in whole_view(session)["processors"][1:])
+
+
+def reception(session: Session) -> Figures:
+    """The first processor on the page."""
+    first: Figures = whole_view(session)["processors"][0]
+    return first
