@@ -257,13 +257,14 @@ class RemoteSystem:
         except TimeoutError:
             raise self._unanswered(waiting, timeout) from None
 
-    def replay(self, log: Path) -> int:
+    def replay(self, log: str | Path) -> int:
         """Send the frames of a log that come from outside, at their times; how many there are.
 
         Returns when the last one is sent. Raises BenchError for a file that is no log.
         """
         drives = frozenset(one.form.feedback for one in self._bench.stations.values())
-        frames = from_outside(log_for(log, self.vocabulary.codec), self.vocabulary.codec, drives)
+        codec = self.vocabulary.codec
+        frames = from_outside(log_for(Path(log), codec), codec, drives)
 
         def planned() -> None:
             now = self._bench.now
@@ -426,8 +427,8 @@ def connect(
     *,
     interface: str,
     channel: str | Sequence[str],
-    drives: Path | None = None,
-    log: Path | None = None,
+    drives: str | Path | None = None,
+    log: str | Path | None = None,
     files: Sequence[str | Path] = (),
 ) -> RemoteSystem:
     """The controllers of a model that run on a bus: any interface of python-can, and its channel.
@@ -440,10 +441,11 @@ def connect(
     Refused for a model or scenario with errors, Unusable where there is no such bus or controller.
     """
     checked = checking.check(Path(model))
-    forms = scenarios.checked(drives, checked.system).drives if drives is not None else {}
+    forms = {} if drives is None else scenarios.checked(Path(drives), checked.system).drives
     channels = [channel] if isinstance(channel, str) else channel
     ends = interfaces_of(checked.system, interface, channels)
-    return connected(checked, ends, forms, log, [str(file) for file in files])
+    record = None if log is None else Path(log)
+    return connected(checked, ends, forms, record, [str(file) for file in files])
 
 
 def connected(

@@ -194,10 +194,13 @@ def test_a_bus_that_breaks_ends_who_waits_and_names_itself() -> None:
         server.close()
 
 
-def test_drives_of_a_scenario_are_simulated_and_pushed(far: FarEnd, tmp_path: Path) -> None:
-    drives = ROBOT / "scenario.yaml"
+@pytest.mark.parametrize("kind", [str, Path])
+def test_drives_of_a_scenario_are_simulated_and_pushed(
+    far: FarEnd, tmp_path: Path, kind: type[str] | type[Path]
+) -> None:
+    drives = kind(ROBOT / "scenario.yaml")
     channel = far.bus.channel_info.split()[-1]
-    log = tmp_path / "bus.log"
+    log = kind(tmp_path / "bus.log")
     with connect(MODEL, interface="virtual", channel=channel, drives=drives, log=log) as near:
         assert near.drives == ("x", "y", "z")
         far.hears("y_feedback", limit="Clear")
