@@ -22,10 +22,11 @@ from ravenchart.running.process import ControllerProcess
 from ravenchart.running.vocabulary import BusVocabulary
 from tests.support.browser import IN_BROWSER, BrowserPage, launched, serious
 from tests.support.bus_server import BusServer
+from tests.support.far_boards import HEAD, Board
 from tests.support.far_end import FarEnd
 from tests.support.processes import LAUNCHER
 from tests.support.recorded import FOLDER
-from tests.support.snapshot_files import held, snapshot
+from tests.support.snapshot_files import held, number, snapshot
 from tests.support.workbench import running
 
 pytestmark = [*IN_BROWSER, pytest.mark.live]
@@ -177,6 +178,30 @@ def test_the_live_tab_says_what_it_did_not_look_at(tmp_path: Path) -> None:
         )
         assert serious(pane.page) == []
         pane.closed(bench.address)
+
+
+def test_a_board_is_shown_by_its_serial_line() -> None:
+    chart = number("bed.Infusion", "region")
+    board = Board()
+    with running(PUMP, "--file", board.port) as bench, launched() as browser:
+        pane = BrowserPage(browser, bench.address)
+        pane.page.get_by_role("tab", name="Live").click()
+        live = pane.page.get_by_role("region", name="Controller of board")
+        expect(live).to_contain_text("Not seen: ")
+        board.says(*HEAD, f"T 1000000000 State {chart} 1", f"T 2000000000 Transition {chart} 0")
+        row = live.get_by_role("row", name="bed.Infusion", exact=False).first
+        expect(row).to_contain_text("1.0 s")
+        row.get_by_role("button").click()
+        expect(pane.page.locator(".paper g.active > title").first).to_be_attached()
+        control = number("control", "processor")
+        board.says("N 3000000000", f"P {control} 60 0 456000 171000", f"Q {chart} 2 3")
+        expect(live.get_by_role("row", name="control").first).to_contain_text("456 us")
+        expect(live.get_by_role("row", name="bed.Infusion 2 of 8")).to_be_visible()
+        assert serious(pane.page) == []
+        board.unplugged()
+        expect(live.locator("h3")).to_contain_text("ENDED WITHOUT ITS REPORT")
+        pane.closed(bench.address)
+    board.close()
 
 
 def test_the_bus_of_a_shell_is_shown_until_it_ends_and_then_that_of_the_next_one() -> None:

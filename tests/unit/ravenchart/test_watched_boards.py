@@ -10,7 +10,6 @@ import os
 import shutil
 import socket
 import time
-import tty
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -30,12 +29,12 @@ from ravenchart.running.monitoring import given, watching
 from ravenchart.running.watched_boards import NOT_NAMED, SerialLine, WatchedBoard, line_of
 from ravenchart.workbench.live import LiveView
 from tests.support.can_frames import within
+from tests.support.far_boards import HEAD, Board
 from tests.support.recordings import monitored, random_trace
 from tests.support.snapshot_files import GENERATED, PUMP, number, trace_map
 
 pytestmark = pytest.mark.clock
 
-HEAD = ("E 71234", f"M {trace_map().digest}")
 BOOT = ("Xilinx First Stage Boot Loader", "E is no start, nor is", "T 1 State 0 0")
 
 
@@ -43,37 +42,6 @@ BOOT = ("Xilinx First Stage Boot Loader", "E is no start, nor is", "T 1 State 0 
 def checked() -> Checked:
     """The pump, whose program is generated."""
     return check(PUMP, deadlines=False)
-
-
-class Board:
-    """The far end of a serial line."""
-
-    def __init__(self) -> None:
-        self.end, inner = os.openpty()
-        tty.setraw(inner)
-        self.port = os.ttyname(inner)
-        self._inner = inner
-
-    def says(self, *lines: str) -> None:
-        """Write these lines."""
-        self.writes("".join(f"{line}\r\n" for line in lines))
-
-    def writes(self, text: str) -> None:
-        """Write this, a line or not; the watcher reads meanwhile."""
-        rest = text.encode()
-        while rest:
-            rest = rest[os.write(self.end, rest[:512]) :]
-
-    def unplugged(self) -> None:
-        """The device is gone."""
-        os.close(self.end)
-        self.end = -1
-
-    def close(self) -> None:
-        """Give all back."""
-        if self.end >= 0:
-            os.close(self.end)
-        os.close(self._inner)
 
 
 @pytest.fixture
