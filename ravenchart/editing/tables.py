@@ -18,7 +18,7 @@ from pathlib import Path
 from ravenchart.allocation.proposals import WantedTable, free_name, stack_text
 from ravenchart.analysis.units import duration
 from ravenchart.gen.files import spans
-from ravenchart.gen.files.spans import plain_tree
+from ravenchart.gen.files.spans import YamlScalar, plain_tree
 from ravenchart.gen.model.system import Processor, System
 
 from . import edits
@@ -70,7 +70,7 @@ def moved(places: ModelPlaces, row: str, to: str, place: int) -> dict[str, Docum
     files = _Files(dict(places.documents))
     home = places.row_at(row)
     if home is not None and home[0].name.lower() != to.lower():
-        files.change(home[0].name, partial(_without_phase, row=row))
+        _without_phase(files, home[0].name, row)
     item = _taken(files, row, stays=edits.is_flow(files.processor(to).mapping, "activities"))
     number = _item_at(files, to, place)
     files.change(
@@ -206,16 +206,38 @@ def _without_empty(files: _Files, kept: Sequence[str]) -> None:
         files.change(entry.name, _without)
 
 
-def _without_phase(document: Document, entry: NamedEntry, row: str) -> Document:
-    """Without the phase of a row, which is one in the table that the row leaves."""
-    phases = entry.mapping.mapping("phases")
-    given = [] if phases is None else [name.value for name, _ in phases.entries]
-    own = next((name for name in given if name.lower() == row.lower()), None)
-    if phases is None or own is None:
-        return document
-    if len(given) == 1:
+def _without_phase(files: _Files, processor: str, row: str) -> None:
+    """Remove the phase of a row, which is one in the table that the row leaves.
+
+    Where an entry stands for several rows, each of the others gets one of its own.
+    """
+    phases = files.processor(processor).mapping.mapping("phases")
+    for key, value in () if phases is None else phases.entries:
+        rows = files.places.named(key.value)
+        others = [one for one in rows if one.lower() != row.lower()]
+        if len(others) < len(rows) and isinstance(value, YamlScalar):
+            for one in reversed(others):
+                files.change(processor, partial(_with_phase, key.value, one, value.value))
+            files.change(processor, partial(_without_phase_of, key.value))
+
+
+def _with_phase(
+    behind: str, row: str, value: str, document: Document, entry: NamedEntry
+) -> Document:
+    return edits.with_entry(document, _phases(entry), behind, row, value)
+
+
+def _without_phase_of(key: str, document: Document, entry: NamedEntry) -> Document:
+    """Without an entry of `phases`, and without these where it is the only one."""
+    if len(_phases(entry).entries) == 1:
         return edits.without_entry(document, entry.mapping, "phases")
-    return edits.without_entry(document, phases, own)
+    return edits.without_entry(document, _phases(entry), key)
+
+
+def _phases(entry: NamedEntry) -> spans.YamlMapping:
+    found = entry.mapping.mapping("phases")
+    assert found is not None, "it has phases"
+    return found
 
 
 def _without(document: Document, entry: NamedEntry) -> Document:

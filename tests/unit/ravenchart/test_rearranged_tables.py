@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -179,6 +180,27 @@ def test_a_row_that_leaves_its_table_leaves_its_phase(row: str, gone: str) -> No
     (made,) = moved(places, row, "keeping", 0).values()
     assert made.text.count("phases") == text.replace(gone, "").count("phases")
     assert row not in made.text.partition("    phases")[2].partition("\n")[0]
+
+
+@pytest.mark.parametrize(("written", "left"), [
+    ("{servo_*.tell: 5 ms, cells.tell: 10 ms}  # apart",
+     "{servo_1.tell: 5 ms, servo_3.tell: 5 ms, servo_4.tell: 5 ms, cells.tell: 10 ms}  # apart"),
+    ("\n      servo_*.tell: 5 ms",
+     "\n      servo_1.tell: 5 ms\n      servo_3.tell: 5 ms\n      servo_4.tell: 5 ms"),
+])  # fmt: skip
+def test_the_other_elements_of_an_array_keep_their_phase(
+    tmp_path: Path, written: str, left: str
+) -> None:
+    for file in (ROOT / "examples" / "autopilot").glob("*.yaml"):
+        shutil.copy(file, tmp_path)
+    model, head = tmp_path / "model.yaml", "  moving:\n    schedule: table\n"
+    text = model.read_text(encoding="utf-8")
+    assert text.count(head) == 1
+    model.write_text(text.replace(head, f"{head}    phases: {written}\n"), encoding="utf-8")
+    state = evaluate(model, {})
+    assert state.analysis is not None
+    (made,) = moved(state.places, "servo_2.tell", "acting", 0).values()
+    assert f"{head}    phases: {left}\n" in made.text
 
 
 def test_a_row_that_moves_inside_its_table_keeps_its_phase() -> None:
