@@ -6,9 +6,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
 
 from ravenchart.allocation import helpers, search
 from ravenchart.allocation.proposals import propose, yaml
@@ -18,6 +19,7 @@ from ravenchart.failures import OK, UNUSABLE, Unusable
 from ravenchart.gen.pipeline import load
 from ravenchart.paths import ROOT
 from ravenchart.workbench import room
+from tests.support.workbench import PATIENCE, running, until
 
 PUMP = ROOT / "examples" / "pump" / "model.yaml"
 
@@ -44,6 +46,35 @@ def test_workers_find_the_same_tables(
     here = propose(pump, strategy)
     with helpers.scheduled(cluster.scheduler_address) as there:
         assert yaml(propose(pump, strategy, helpers=there)) == yaml(here)
+
+
+@pytest.mark.slow
+@pytest.mark.clock
+def test_the_workbench_searches_with_them_and_finds_the_same(cluster: LocalCluster) -> None:
+    before = _tasks(cluster)
+    here, there = _best(), _best("--scheduler", cluster.scheduler_address)
+    assert here["met"] and there == here
+    assert _tasks(cluster) > before
+
+
+def _best(*words: str) -> dict[str, Any]:
+    """The tables that a search in the workbench finds."""
+    with running(PUMP, *words) as bench:
+        page = bench.stream()
+        bench.act(kind="search", strategy="fewest")
+        state = until(page, 0)
+        while not (state["search"] and not state["search"]["running"]):
+            state = page.get(timeout=PATIENCE)
+        assert state["search"]["fault"] is None
+        found: dict[str, Any] = state["search"]["best"]
+        return found
+
+
+def _tasks(cluster: LocalCluster) -> int:
+    """How many events of tasks the workers of a cluster have noted."""
+    with Client(cluster.scheduler_address) as client:
+        noted = client.run(lambda dask_worker: len(dask_worker.state.log))
+        return sum(noted.values())
 
 
 @pytest.mark.slow
