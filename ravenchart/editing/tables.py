@@ -302,7 +302,7 @@ def _set_priorities(
         files.change(name, partial(_with_key, key="priority", value=str(level)))
 
 
-def copies_of(processors: Sequence[Processor], name: str) -> list[Processor]:
+def copies_on_nodes(processors: Sequence[Processor], name: str) -> list[Processor]:
     """The copies of a processor that stands once in the text and is on several nodes."""
     return [one for one in processors if one.name.lower() == f"{name}_{one.node}".lower()]
 
@@ -310,7 +310,7 @@ def copies_of(processors: Sequence[Processor], name: str) -> list[Processor]:
 def _copy(processors: Sequence[Processor], name: str) -> Processor:
     """The processor of that name, or the first of its copies on several nodes."""
     own = (one for one in processors if one.name == name)
-    return next(own, None) or copies_of(processors, name)[0]
+    return next(own, None) or copies_on_nodes(processors, name)[0]
 
 
 def _with_time(document: Document, entry: NamedEntry, key: str, value: str) -> Document:

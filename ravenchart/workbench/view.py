@@ -22,7 +22,7 @@ from ravenchart.analysis.units import TENTH, microseconds
 from ravenchart.building import drawings
 from ravenchart.editing.evaluation import Evaluation, document
 from ravenchart.editing.places import TIMES, DeclaredRow, ItemRow, ModelPlaces, NamedEntry
-from ravenchart.editing.tables import copies_of
+from ravenchart.editing.tables import copies_on_nodes
 from ravenchart.gen.files.spans import YamlScalar
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.system import Chain
@@ -141,7 +141,7 @@ def _processors(where: _Where, good: Analysis, saved: Analysis) -> Iterator[Json
     slots = {slot.element.lower(): slot.timing for slot in good.system.slots}
     for entry in where.places.processors.values():
         own = by_name.get(entry.name.lower())
-        copies = [] if own is not None else copies_of(good.system.processors, entry.name)
+        copies = [] if own is not None else copies_on_nodes(good.system.processors, entry.name)
         one = next(iter(copies), own)
         levels = {copy.priority for copy in copies}
         yield {
