@@ -20,6 +20,7 @@ from typing import TypeVar
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.files.located import Map, grow_list
+from ravenchart.gen.language.names import nearest, nearest_hint
 from ravenchart.gen.language.quantities import parsed_duration, shown
 from ravenchart.gen.language.terms import (
     BOOLEAN,
@@ -105,6 +106,7 @@ def _text(value: Value) -> str:
     return {"True": "true", "False": "false"}.get(str(value), str(value))
 
 
+KEYS = {"at", "raise", "with", "put", "value", "until"}
 FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
 
 
@@ -157,12 +159,15 @@ class _Reading:
             return self.time(item, "until")
         known = next((k for k in ({"raise", "with"}, {"put", "value"}) if keys & k), {"raise"})
         wanted = {"at", *known}
-        for key in item:
-            if key not in wanted:
-                message = f"`{key}` has no place here"
-                self.wrong("RV-1002", item.keys_at[key], message, f"an entry is {FORMS}")
-        for key in sorted(wanted - {"with"} - keys):
-            self.wrong("RV-1002", item.origin, f"the key `{key}` is missing")
+        slips = {key: nearest(key, KEYS - keys) for key in item if key not in wanted}
+        for key, meant in slips.items():
+            hint = f"did you mean `{meant}`?" if meant else f"an entry is {FORMS}"
+            self.wrong("RV-1002", item.keys_at[key], f"`{key}` has no place here", hint)
+        missing = set() if "until" in slips.values() else wanted - {"with", *slips.values()} - keys
+        for key in sorted(missing):
+            self.wrong(
+                "RV-1002", item.origin, f"the key `{key}` is missing", f"an entry is {FORMS}"
+            )
         if keys <= wanted and wanted - {"with"} <= keys:
             at = self.time(item, "at")
             if at is not None and "raise" in item:
@@ -285,11 +290,13 @@ class _Reading:
                 for literal in kind.literals:
                     if literal.lower() == given.lower():
                         return literal
+        hint = None
         if isinstance(kind, IntegerType):
             wanted = f"{kind.first} .. {kind.last}"
         else:
             wanted = f"one of {', '.join(kind.literals)}"
-        self.wrong("RV-1005", origin, f"a value of type {kind.name} is {wanted}")
+            hint = nearest_hint(str(given), kind.literals)
+        self.wrong("RV-1005", origin, f"a value of type {kind.name} is {wanted}", hint)
         return None
 
 

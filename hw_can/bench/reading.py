@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from ravenchart.gen.diagnostics import Diagnostic, error, in_order, render_all
 from ravenchart.gen.files.located import FormPath, Map, Seq, lines_of
-from ravenchart.gen.language.names import REQUIREMENT
+from ravenchart.gen.language.names import REQUIREMENT, nearest, nearest_hint
 from ravenchart.gen.origins import Origin
 
 KEYS, VALUES, UNKNOWN, MISFIT = "RV-1302", "RV-1303", "RV-1304", "RV-1306"
@@ -70,8 +70,12 @@ class Source:
         try:
             return form.model_validate(value)
         except ValidationError as fault:
-            for item in fault.errors():
-                self._report(form, path, item["loc"], item["type"], item.get("ctx", {}), item)
+            items = fault.errors()
+            slips = [one["loc"] for one in items if one["type"] == "extra_forbidden"]
+            meant = {(*slip[:-1], nearest(str(slip[-1]), keys_of_form(form))) for slip in slips}
+            for item in items:
+                if item["type"] != "missing" or item["loc"] not in meant:
+                    self._report(form, path, item["loc"], item["type"], item.get("ctx", {}), item)
         return None
 
     def _report(
@@ -85,14 +89,14 @@ class Source:
     ) -> None:
         """Report one part that does not fit, in words."""
         assert isinstance(context, dict) and isinstance(item, dict)
-        names = [one.alias or name for name, one in form.model_fields.items() if name != "req"]
+        names = keys_of_form(form)
         inside = self._inside((*path, *place))
         if kind == "missing":
             shown = ", ".join(f"`{name}`" for name in names)
             self.wrong(KEYS, path, f"the key `{place[-1]}` is missing", f"the keys are {shown}")
         elif kind == "extra_forbidden":
             shown = ", ".join(f"`{name}`" for name in names)
-            hint = f"the keys here are {shown}"
+            hint = nearest_hint(str(place[-1]), names) or f"the keys here are {shown}"
             self.wrong(KEYS, inside, f"`{place[-1]}` has no place here", hint, key=True)
         else:
             name = next((part for part in reversed(inside) if isinstance(part, str)), "")
@@ -134,6 +138,11 @@ def rendered(found: Sequence[Diagnostic], file: str, text: str) -> str:
     once = {(one.origin, one.message): one for one in found}
     sources = {file: lines_of(text)} if text else {}
     return render_all(in_order(once.values()), sources)
+
+
+def keys_of_form(form: type[BaseModel]) -> list[str]:
+    """The keys of a form, as a file has them."""
+    return [one.alias or name for name, one in form.model_fields.items() if name != "req"]
 
 
 def _shown(value: object) -> str:

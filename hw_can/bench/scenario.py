@@ -19,6 +19,7 @@ from pydantic import BaseModel
 
 from ravenchart.gen.diagnostics import error, render
 from ravenchart.gen.files.located import FormPath, grow
+from ravenchart.gen.language.names import nearest_hint
 from ravenchart.gen.origins import Origin
 
 from .forms import (
@@ -33,7 +34,7 @@ from .forms import (
 )
 from .plant_stations import outgoing
 from .quantities import PERIOD
-from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, rendered
+from .reading import KEYS, MISFIT, UNKNOWN, VALUES, Source, keys_of_form, rendered
 from .replay import fault_of_log
 from .steps import (
     STEPS,
@@ -158,9 +159,20 @@ def _one_of(
     if len(given) != 1:
         found = " and ".join(f"`{key}`" for key in given) or "none of them"
         message = f"must have exactly one of {known}; found {found}"
-        source.wrong(KEYS, path, message)
+        hint = "write an entry for each" if given else _meant(kinds, [str(key) for key in raw])
+        source.wrong(KEYS, path, message, hint)
         return None
     return source.read(kinds[given[0]], raw, path)
+
+
+def _meant(kinds: Mapping[str, type[Kind]], keys: list[str]) -> str | None:
+    """A hint for keys of which one is a slip: the nearest one of a form that has all others."""
+    for key in keys:
+        others = {one for one in keys if one != key}
+        fitting = [kind for kind, form in kinds.items() if others <= {*keys_of_form(form)}]
+        if hint := nearest_hint(key, fitting):
+            return hint
+    return None
 
 
 def _fit_together(scenario: Scenario, source: Source) -> None:

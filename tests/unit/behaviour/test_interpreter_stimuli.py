@@ -137,6 +137,32 @@ def test_wrong_entry_is_told_at_its_place(system: System, entry: str, message: s
 
 
 @pytest.mark.parametrize(
+    ("entry", "key", "meant"),
+    [
+        ("{untill: 1 ms}", "untill", "until"),
+        ("{att: 1 ms, raise: unit.Go}", "att", "at"),
+        ("{at: 1 ms, rais: unit.Go}", "rais", "raise"),
+        ("{at: 1 ms, putt: unit.level, value: 3}", "putt", "put"),
+        ("{at: 1 ms, put: unit.level, valeu: 3}", "valeu", "value"),
+    ],
+)
+def test_a_misspelt_key_is_one_error_with_the_key_that_was_meant(
+    system: System, entry: str, key: str, meant: str
+) -> None:
+    """The key that is missing because of it is not an error of its own."""
+    _, found = read_stimuli(f"- {entry}\n", "e.yaml", system)
+    assert found[0].message == f"`{key}` has no place here"
+    assert found[0].hint == f"did you mean `{meant}`?"
+    assert len(found) == 1
+
+
+def test_a_misspelt_literal_has_a_hint(system: System) -> None:
+    text = "- {at: 1 ms, put: unit.hue, value: Gren}\n- {until: 1 s}\n"
+    (found,) = read_stimuli(text, "e.yaml", system)[1]
+    assert found.hint == "did you mean `Green`?"
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("", "e.yaml:1:1: an events file is a list of `- {...}` lines [RV-1001]"),

@@ -141,6 +141,24 @@ def test_hints_list_what_there_is() -> None:
         assert str(caught.value).splitlines()[-1].endswith(f"hint: {hint}")
 
 
+@pytest.mark.parametrize(
+    ("step", "hint"),
+    [
+        ("{sent: m, with: {}}", "did you mean `send`?"),
+        ("{wait: 1 s, release: x}", "write an entry for each"),
+        ("{wait_for: m.f, iss: 5, within: 1 s}", "did you mean `is`?"),
+        ("{wait_for: m.f, is: 5, wihtin: 1 s}", "did you mean `within`?"),
+    ],
+)
+def test_a_misspelt_key_is_one_error_with_a_hint(step: str, hint: str) -> None:
+    """The key that is missing because of it is not an error of its own."""
+    with pytest.raises(ScenarioError) as caught:
+        parse_scenario(scenario_text(f"  - {step}\n"))
+    told = str(caught.value)
+    assert told.count(": error: ") == 1
+    assert told.splitlines()[-1].endswith(f"hint: {hint}")
+
+
 def test_all_mistakes_are_told_at_once_in_the_files_order() -> None:
     with pytest.raises(ScenarioError) as caught:
         parse_scenario(scenario_text("  - {wait: 1}\n  - {jump: 1}\n  - {wait: 2}\n"))
