@@ -81,6 +81,10 @@ LOGICAL = "runtime-logical"
 """The part of the runtime that controllers need which have logical execution times."""
 LOGICAL_UNITS = ("instance_logical.ads", "ravenchart-logical_times.ads")
 
+EVENTS = "runtime-events"
+"""The part of the runtime that controllers need of which events release processors."""
+EVENT_UNITS = ("instance_releasing_events.ads",)
+
 
 class UnknownTargetError(ValueError):
     """A name that no target and no group of targets has; the message lists those that there are."""
@@ -111,6 +115,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
         FLOATS: _floats,
         VALUES: partial(_instances, VALUES, *RECORDING),
         LOGICAL: partial(_instances, LOGICAL, *LOGICAL_UNITS),
+        EVENTS: partial(_instances, EVENTS, *EVENT_UNITS),
         BUS: _bus,
         KERNEL: _kernel,
     }
