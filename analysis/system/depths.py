@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING
 from ravenchart.gen.derive.calls import callers_of, calls_from_afar
 from ravenchart.gen.model.commands import Provided
 from ravenchart.gen.model.component import Port, PortKind
-from ravenchart.gen.model.instances import Connection, End, Instance
+from ravenchart.gen.model.instances import Connection, End, Events, Instance
+from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for, taking_region
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import Carried, Stop
 from ravenchart.gen.origins import Origin
@@ -86,6 +87,9 @@ def depths(analysis: Analysis) -> Iterator[Depth]:
                 yield from _of_port(instance, port, analysis)
         for provided in instance.component.provides:
             yield from _of_requests(instance, provided, analysis)
+    for processor in system.processors:
+        if isinstance(processor.released_by, Events):
+            yield from _of_events(processor.released_by, analysis)
 
 
 def _together(times: Sequence[tuple[int | None, int]]) -> int | None:
@@ -143,6 +147,26 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     needed = None if together is None else together + len(afar) - len(ways)
     what = f"requests may wait in {instance.name}.{provided.name}"
     yield Depth(what, "queue", provided.origin, provided.depth, needed)
+
+
+def _of_events(taken: Events, analysis: Analysis) -> Iterator[Depth]:
+    """The events that wait for a region that they release, where one row raises all of them.
+
+    Nothing is known of how often faults, buses or others raise them.
+    """
+    system, place = analysis.system, End(taken.instance, taken.name)
+    region, rows = taking_region(system, taken), list(raised_at_once(system, taken))
+    expected = region.overflow is Overflow.DROP_OLDEST or region.on_overflow is not None
+    relied_on = any(place in chain.way for chain in system.chains)
+    if len(rows) != 1 or more_events(system, taken, rows[0]) or (expected and not relied_on):
+        return
+    component = system.instance(taken.instance).component
+    parts = (End(taken.instance, one.name) for one in (*component.runnables(), *component.inputs()))
+    raiser = next(one for one in parts if raises_for(system, one, place))
+    hop = analysis.latency((raiser, place)).hops[-1]
+    needed = None if hop.step.waits else hop.backlog
+    what = f"events may wait in the queue of {taken}"
+    yield Depth(what, "queue", region.origin, region.queue_depth, needed)
 
 
 def _senders(connection: Connection, analysis: Analysis) -> list[End]:

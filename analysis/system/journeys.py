@@ -21,7 +21,8 @@ from typing import NamedTuple
 
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.logical import first_of, links_by_port, period_of, timed_row
-from ravenchart.gen.model.system import Carried, Chain, System
+from ravenchart.gen.model.raising import raises_for, released_at, taking_region
+from ravenchart.gen.model.system import Carried, Chain, Stop, System
 
 from .observed import Observation
 from .timing import Analysis
@@ -112,6 +113,7 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
     links = links_by_port(system)
     jobs: Sequence[int] = ()  # of the row before
     row = ""
+    before: Stop | None = None
     for place in chain.way:
         if isinstance(place, Carried):
             message = messages[place.message]
@@ -132,9 +134,15 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
                 yield Stage(_releases(system, seen, link.handler, ran), later=ran)
             jobs = ()
         elif str(place) in rows:
+            taken = released_at(system, place)
+            if taken is not None and before is not None and raises_for(system, before, place):
+                events = [f"{taken.instance}.{e}" for e in taking_region(system, taken).events()]
+                raised = sorted(r.time for event in events for r in seen.of("raised", event))
+                yield Stage(raised, jobs)
             times = [r.time for r in seen.of("activity", str(place))]
             yield Stage(times)
             jobs, row = times, str(place)
+        before = place
 
 
 def _releases(system: System, seen: Observation, row: str, times: Sequence[int]) -> list[int]:

@@ -33,8 +33,9 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns, named
 from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
-from ravenchart.gen.model.instances import End, Requests
+from ravenchart.gen.model.instances import End, Events, Requests
 from ravenchart.gen.model.logical import links_by_port, saved_wait, timed_row
+from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Processor, Stop, System
@@ -169,7 +170,7 @@ class Latencies:
             if kept:
                 steps[-1] = replace(steps[-1], keeps=kept)
             steps.append(self._row(row, port, place, steps, released))
-            kept = "" if port is not None else self._kept(place, following)
+            kept = self._kept(place, following) if port is None else self._rarely(place, following)
         if kept:
             steps[-1] = replace(steps[-1], keeps=kept)
         network = replace(self.network, released_by=released)
@@ -204,11 +205,19 @@ class Latencies:
 
     def _kept(self, row: End, following: Stop | None) -> str:
         """Why jobs of a row may leave the next place unchanged; "" where none does."""
+        if rarely := self._rarely(row, following):
+            return rarely
         component = self.system.instance(row.instance).component
         item = named(component.runnables(), row.name)
         if not isinstance(following, End) or component.renews(item, following.name):
             return ""
         return f"{row} gives {following} a new value in some of its jobs only"
+
+    def _rarely(self, place: End, following: Stop | None) -> str:
+        """The reason of `_kept` where a row or port raises events for the next row; else ""."""
+        if not raises_for(self.system, place, following):
+            return ""
+        return f"{place} raises events for {following} in some jobs only"
 
     def _row(
         self,
@@ -224,6 +233,12 @@ class Latencies:
         if isinstance(called, Requests) and steps and self.rows[row][1] == 0:
             made = ChainStep(row, HopKind.WOKEN, puts=calls_at_once(self.system, called))
             return self._rare(made, self.rows[row][0], steps[-1].name)
+        if isinstance(called, Events) and steps and row == str(called):
+            raised = raised_at_once(self.system, called).get(steps[-1].name, 0)
+            if raised:
+                waits = more_events(self.system, called, steps[-1].name)
+                made = ChainStep(row, HopKind.WOKEN, puts=raised, waits=waits)
+                return made if waits else self._rare(made, self.rows[row][0], steps[-1].name)
         queued = not woken and port is not None and port.kind is PortKind.QUEUED and bool(steps)
         senders = self._senders(place) if queued or woken else ()
         puts = max((getattr(one, "steps_per_execution", 1) for one in senders), default=1)
@@ -270,13 +285,16 @@ class Latencies:
         """
         response = self.found.responses[processor.name].bound
         if step.hop is HopKind.SAMPLED:
-            waits = f"{step.name} runs only when a value for {processor.released_by} comes"
+            what = "an event" if isinstance(processor.released_by, Events) else "a value"
+            waits = f"{step.name} runs only when {what} for {processor.released_by} comes"
             return replace(step, waits=waits, keeps=waits)
         period = self.network.items()[sender].period
         if period < step.puts * processor.period:
-            many = f"{step.puts} values " if step.puts > 1 else ""
+            events = isinstance(processor.released_by, Events)
+            verb, what = ("raise", "events") if events else ("send", "values")
+            many = f"{step.puts} {what} " if step.puts > 1 else ""
             waits = (
-                f"{sender} may send {many}every {shown(Ns(period))}, but {processor.name} is "
+                f"{sender} may {verb} {many}every {shown(Ns(period))}, but {processor.name} is "
                 f"released every {shown(processor.period)} at most"
             )
             return replace(step, waits=waits)

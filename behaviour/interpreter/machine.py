@@ -4,8 +4,8 @@
 """A whole system in virtual time.
 
 At each instant every processor that is due runs its table in order, the highest
-priority first. An execution takes no time. A processor that a port releases is due
-when a value waits there and its separation is over; its releases are at such
+priority first. An execution takes no time. A processor that a port or region releases is due
+when a value or event waits there and its separation is over; its releases are at such
 instants too. A processor that a bus releases does not run: received values come as
 stimuli, and values sent on a bus are discarded. Activities that the user writes do
 nothing.
@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator
 
 from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, Port, PortKind
-from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.instances import End, Events, Instance
 from ravenchart.gen.model.logical import logical_links
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
 from ravenchart.gen.model.system import Processor, Slot, System, Work
@@ -193,10 +193,12 @@ class Machine:
             for row in link.rows
         }
         self._periodic = [one for one in system.processors if one.released_by is None]
-        woken = (one for one in system.processors if one.released_by_port is not None)
+        woken = (one for one in system.processors if isinstance(one.released_by, End | Events))
         self._woken = sorted(woken, key=lambda one: -one.priority)
         self.earliest = {one.name: 0 for one in self._woken}
-        """The earliest next release of each processor that a port releases."""
+        """The earliest next release of each processor that a port or region releases."""
+        self.started = False
+        """The regions whose events release a processor have made their start."""
         self.values: list[ValueRecord] = []
         """The recorded values so far."""
 
@@ -213,6 +215,7 @@ class Machine:
         self, now: Ns, slots: Iterable[Slot], entries: Iterable[Raised | Arrived] = ()
     ) -> Iterator[StepRecord]:
         """Execute one instant: first the stimuli from outside, then the rows."""
+        yield from self._start()
         for entry in entries:
             self._take(entry, now)
         for slot in slots:
@@ -222,14 +225,31 @@ class Machine:
             yield from self._execute(now, slot)
         yield from self._release(now, None)
 
+    def _start(self) -> Iterator[StepRecord]:
+        """Before the first instant: the starts of regions whose events release a processor."""
+        if self.started:
+            return
+        self.started = True
+        for taken in (one.released_by for one in self._woken):
+            if isinstance(taken, Events):
+                yield from self._run_region(Ns(0), self.instances[taken.instance], taken.name)
+
+    def _waits(self, queue: End | Events) -> bool:
+        """Whether a queue has something for the processor that it releases."""
+        own = self.instances[queue.instance]
+        if isinstance(queue, End):
+            return bool(own.mailboxes[queue.name].waiting)
+        run = own.regions[queue.name]
+        return bool(run.completed or run.queue)
+
     def _release(self, now: Ns, before: Processor | None) -> Iterator[StepRecord]:
-        """Run the processors that waiting values release and that are above ``before``."""
+        """Run the processors that values and events release and that are above ``before``."""
         for one in self._woken:
-            port = one.released_by_port
+            queue = one.released_by
             due = before is None or (one.priority > before.priority)
-            if port is None or not due or now < self.earliest[one.name]:
+            if not due or now < self.earliest[one.name]:
                 continue
-            if self.instances[port.instance].mailboxes[port.name].waiting:
+            if isinstance(queue, End | Events) and self._waits(queue):
                 self.earliest[one.name] = now + one.period
                 for slot in one.slots:
                     yield from self._execute(now, slot)

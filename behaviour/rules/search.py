@@ -112,6 +112,9 @@ class WaySearch:
         """The first violation found."""
         if any(t.tree.region.steps_per_execution > 1 for t in self.threads):
             return None
+        rows = (f"{self.instance}.{thread.name}" for thread in self.threads)
+        if any(self.system.processor_of(row).released_by is not None for row in rows):
+            return None  # nothing bounds when it runs: no schedule is known to be feasible
         seen: set[str] = set()
         waiting = deque([self.start()])
         while waiting:

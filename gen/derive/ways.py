@@ -11,12 +11,13 @@ in the model.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from ravenchart.gen.model.commands import Server
-from ravenchart.gen.model.instances import End
+from ravenchart.gen.model.instances import End, Events
+from ravenchart.gen.model.raising import raises_for
 from ravenchart.gen.model.statechart import OnEvent
 from ravenchart.gen.model.system import Carried, Chain, Gap, Stop, System
 
@@ -50,8 +51,9 @@ def flow_of(system: System) -> Flow:
                 flow[End(binding.instance, need.name)].append(serving(provider))
         elif provider is None and need.fallback is not None:
             flow[End(binding.instance, need.fallback.item)] += asking(system, binding)
-    for connection in system.connections:
-        flow[connection.source].append(connection.target)
+    joined = [(one.source, one.target) for one in system.connections]
+    for source, target in (*joined, *_by_events(system)):
+        flow[source].append(target)
     for message in (m for m in system.messages if not m.controls):
         if message.source is not None:
             flow[message.source].append(Carried(message.name))
@@ -61,6 +63,19 @@ def flow_of(system: System) -> Flow:
             reply = message.source if message.is_reply else None
             flow[served if reply else message.targets[0]].append(reply or served)
     return flow
+
+
+def _by_events(system: System) -> Iterator[tuple[End, End]]:
+    """Each row or port that raises events by which a region releases its processor, with that."""
+    for taken in (processor.released_by for processor in system.processors):
+        if not isinstance(taken, Events):
+            continue
+        region = End(taken.instance, taken.name)
+        component = system.instance(taken.instance).component
+        for one in (*component.runnables(), *component.inputs()):
+            place = End(taken.instance, one.name)
+            if place != region and raises_for(system, place, region):
+                yield place, region
 
 
 def _event_over(

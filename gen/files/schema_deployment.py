@@ -191,9 +191,10 @@ class ProcessorForm(Element):
         "every node that receives from its bus."
     )
     released_by: PathReference | None = optional(
-        "The bus, the queued input port `instance.port`, or the provided interface "
-        "`instance.Interface` that releases it: then it is sporadic. It handles the reception of "
-        "the bus, the values of the port, or the calls of the interface."
+        "The bus, the queued input port `instance.port`, the provided interface "
+        "`instance.Interface`, or the region `instance.Region` that releases it: then it is "
+        "sporadic. It handles the reception of the bus, the values of the port, the calls of the "
+        "interface, or the events of the region."
     )
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."

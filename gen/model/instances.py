@@ -39,6 +39,23 @@ class Requests:
 
 
 @dataclass(frozen=True, slots=True)
+class Events:
+    """The queue of a region of an instance: the events that it takes."""
+
+    instance: str
+    name: str
+    """The region."""
+
+    def __str__(self) -> str:
+        """``instance.Region``."""
+        return f"{self.instance}.{self.name}"
+
+
+Queue = End | Requests | Events
+"""What can release a processor and is in an instance: a port, an interface or a region."""
+
+
+@dataclass(frozen=True, slots=True)
 class Delegation:
     """A port or required interface that is reached by one of a composite instance around it."""
 

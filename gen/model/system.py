@@ -23,7 +23,7 @@ from ravenchart.gen.origins import Origin
 from .buses import Bus, Message, Reception
 from .commands import Binding, Device, Poll
 from .component import Component
-from .instances import Connection, End, Instance, Requests
+from .instances import Connection, End, Events, Instance, Queue, Requests
 from .nodes import Node
 from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
@@ -33,7 +33,7 @@ UNREADY = "RV-0804"
 """The model is checked and analysed, but not generated yet."""
 
 UNFIT_PORT = "RV-0715"
-"""A port that cannot release a processor."""
+"""A port, interface or region that cannot release a processor."""
 
 # --- Deployment --------------------------------------------------------------
 
@@ -81,7 +81,8 @@ class Slot:
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
-    That is a bus whose frames it receives, a queued input port, or a provided interface.
+    That is a bus whose frames it receives, or a queue: of an input port, of the calls of a provided
+    interface, or of the events of a region.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -94,7 +95,7 @@ class Processor:
     deadline: Ns
     priority: int
     stack_bytes: int
-    released_by: str | End | Requests | None
+    released_by: str | Queue | None
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
@@ -117,8 +118,8 @@ class Processor:
         return self.released_by if isinstance(self.released_by, End) else None
 
     @property
-    def released_by_value(self) -> End | Requests | None:
-        """The queued port or interface whose values or calls release it."""
+    def released_by_value(self) -> Queue | None:
+        """The queue whose values, calls or events release it."""
         return None if isinstance(self.released_by, str) else self.released_by
 
     @property
@@ -389,7 +390,7 @@ class System:
         homes = tuple(dict.fromkeys(self.home(end) for end in message.targets))
         return tuple(Reception(message, home, len(homes) > 1) for home in homes)
 
-    def received(self, bus: str | End | Requests | None, node: str) -> tuple[Reception, ...]:
+    def received(self, bus: str | Queue | None, node: str) -> tuple[Reception, ...]:
         """The receptions of a node from a bus, in model order."""
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
@@ -462,8 +463,8 @@ class System:
     def _woken(self) -> dict[End, Processor]:
         return {p.released_by_port: p for p in self.processors if p.released_by_port}
 
-    def called(self, served: Requests) -> Processor | None:
-        """The processor that the calls of an interface release; None where none is."""
+    def called(self, served: Requests | Events) -> Processor | None:
+        """The processor that calls of an interface, or events of a region, release; else None."""
         return next((one for one in self.processors if one.released_by == served), None)
 
     def object(self, element: str) -> SharedObject:

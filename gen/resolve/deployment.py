@@ -26,12 +26,10 @@ from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
-from ravenchart.gen.model.component import Direction
-from ravenchart.gen.model.instances import End, Requests
+from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.nodes import SNAPSHOT_PERIOD, MonitorStream, Node, Supervision, Tick
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
-    UNFIT_PORT,
     Carried,
     Chain,
     Processor,
@@ -42,9 +40,9 @@ from ravenchart.gen.model.system import (
 )
 from ravenchart.gen.origins import Origin
 
-from .components import Parts, timing_of
-from .composites import connectable, provided_by
+from .components import timing_of
 from .paths import DeploymentNames, event_at, member_of, split
+from .releasers import releaser_of
 
 
 def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
@@ -172,7 +170,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         node = site.nodes.look_up(form.node, form.at("node"), findings)
     releaser = None
     if form.released_by is not None:
-        releaser = _releaser(form.released_by, form.at("released_by"), site)
+        releaser = releaser_of(form.released_by, form.at("released_by"), site)
         if form.period is None and not form.lost("period"):
             message = f"the sporadic processor {name} needs the key `period`"
             hint = "give the least time between two of its releases"
@@ -285,49 +283,6 @@ def _logical(name: str, form: ProcessorForm, period: Ns, findings: Findings) -> 
         message = f"the logical execution time of {name} is longer than its period"
         findings.error("RV-0703", form.at("logical_execution_time"), message)
     return given
-
-
-def _releaser(text: str, origin: Origin, site: DeploymentNames) -> str | End | Requests | None:
-    """The bus, input port or provided interface that releases a processor."""
-    if "." not in text:
-        if not site.buses.knows(text):
-            site.owners.used(text, origin, site.findings)  # the name of a bus or an instance
-        if not site.buses.knows(text) and site.owners.find(text) is not None:
-            message = f"`{text}` must have the form bus or instance.port"
-            hint = f"add a queued port of it: `{text}.port`"
-            site.findings.error("RV-0306", origin, message, hint=hint)
-            return None
-        if not site.buses.knows(text) and not site.owners.knows(text):
-            site.buses.used(text, origin, site.findings)
-            site.findings.lose()
-            message = f"there is no bus or instance named `{text}`"
-            near = meant(text, site.buses.names())
-            hint = near or "name a bus, or a queued input port as `instance.port`"
-            site.findings.error("RV-0305", origin, message, hint=hint)
-            return None
-        bus = site.buses.look_up(text, origin, site.findings)
-        return None if bus is None else bus.name
-    found = member_of(text, "bus or instance.port", origin, site)
-    if found is None:
-        return None
-    instance, parts, name = found
-    ports = connectable(parts)
-    if not ports.knows(name):
-        offered = provided_by(parts.component, damaged=False) if isinstance(parts, Parts) else None
-        if offered is not None and offered.knows(name):
-            served = offered.look_up(name, origin, site.findings)
-            return None if served is None else Requests(instance.name, served.name)
-    port = ports.look_up(name, origin, site.findings)
-    if port is None:
-        return None
-    end = End(instance.name, port.name)
-    if port.direction is not Direction.IN:
-        message = f"{end} is an output port: only an input port releases a processor"
-        notes = [(port.origin, f"`{port.name}` is declared here")]
-        hint = "name the queued input port that it is connected to"
-        site.findings.error(UNFIT_PORT, origin, message, notes=notes, hint=hint)
-        return None
-    return end
 
 
 def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames) -> Slot | None:

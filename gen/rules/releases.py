@@ -13,20 +13,15 @@ from collections.abc import Callable, Iterator
 
 from ravenchart.gen.derive.calls import asking, callers_of
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Binding, Device, Provided, Remote, Server
 from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Connection, End, Instance, Requests
-from ravenchart.gen.model.system import UNFIT_PORT, Processor, Slot, System, Work
-from ravenchart.gen.origins import Origin
+from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
 from ravenchart.gen.resolve.system import Resolved
 
-TABLE = "RV-0716"
-"""The rule on the table of a processor that a port releases."""
-
-Problem = tuple[str, Origin, str, str]
-"""The error, the location of its cause, a note on that, and the hint."""
+from .event_releases import events_can_release
+from .released_tables import TABLE, Problem, other_period
 
 
 def ports_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -72,19 +67,7 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
                     hint += f"; the table of {processor.name} has rows of {port.instance} only"
                 yield error(TABLE, slot.origin, message, hint=hint)
             else:
-                yield from _other_period(processor, slot)
-
-
-def _other_period(processor: Processor, slot: Slot) -> Iterator[Diagnostic]:
-    """An error for a row that is not due in every release."""
-    if slot.timing.period != processor.period:
-        message = (
-            f"the period of {slot.element} is {shown(slot.timing.period)}, but "
-            f"{processor.name} runs it in each of its releases, which are "
-            f"{shown(processor.period)} apart at least"
-        )
-        hint = f"give {slot.element} and {processor.name} the same `period`"
-        yield error(TABLE, slot.origin, message, hint=hint)
+                yield from other_period(processor, slot)
 
 
 def _is_queued(instance: Instance, end: End) -> bool:
@@ -233,7 +216,7 @@ def _serves(processor: Processor, instance: Instance, server: str) -> Iterator[D
             hint = "move it to a periodic processor"
             yield error(TABLE, slot.origin, message, hint=hint)
         else:
-            yield from _other_period(processor, slot)
+            yield from other_period(processor, slot)
 
 
 def _of_callers(system: System, instance: Instance, provided: Provided) -> Iterator[Problem]:
@@ -268,4 +251,5 @@ RELEASE_RULES: tuple[Callable[[Resolved], Iterator[Diagnostic]], ...] = (
     ports_can_release,
     tables_handle_the_port,
     calls_can_release,
+    events_can_release,
 )

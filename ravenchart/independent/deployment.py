@@ -316,9 +316,10 @@ class Deployment:
         )
 
     def _releasing(self, end: str) -> str:
-        """A queued port or an interface whose calls release a processor."""
+        """A queued port, an interface, or a region whose events release a processor."""
         owner, _, port = end.rpartition(".")
-        if self.component_of(owner).map("provides").name(port):
+        parts = self.component_of(owner)
+        if parts.map("provides").name(port) or parts.map("regions").name(port):
             return end
         ports = self.component_of(owner).map("ports")
         if ports.map(ports.name(port) or "").text("kind") != "queued":

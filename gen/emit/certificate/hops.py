@@ -16,8 +16,9 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.derive.calls import calls_at_once
 from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
-from ravenchart.gen.model.instances import End, Requests
+from ravenchart.gen.model.instances import End, Events, Requests
 from ravenchart.gen.model.logical import LogicalLink, links_by_port
+from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, Processor, Slot, Stop, System
@@ -66,13 +67,13 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
             continue
         if not sure:
             hops[-1] = replace(hops[-1], sure=False)
-        sure = True
+        sure = not raises_for(system, place, following)
         if handled:
             hops.append(_handler(system, place, hops))
         else:
             row = rows[place.name]
             hops.append(_row(system, str(place), row, hops))
-            if isinstance(following, End):
+            if sure and isinstance(following, End):
                 sure = component.renews(row, following.name)
     return tuple(_irregular(system, chain, hops))
 
@@ -133,6 +134,11 @@ def _row(
     called = processor.released_by
     if isinstance(called, Requests) and hops and element == processor.slots[0].element:
         return ClaimedHop(element, "row", "woken", calls_at_once(system, called))
+    if isinstance(called, Events) and hops and element == str(called):
+        raised = raised_at_once(system, called).get(hops[-1].element, 0)
+        if raised:
+            more = bool(more_events(system, called, hops[-1].element))
+            return ClaimedHop(element, "row", "woken", raised, open=more)
     if not follows and processor.released_by_value is not None:
         return ClaimedHop(element, "row", "sampled", open=True, sure=False)
     return ClaimedHop(element, "row", "released" if follows else "sampled", open=waits)

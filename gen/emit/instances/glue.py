@@ -25,12 +25,9 @@ from ravenchart.gen.emit.ada.declarations import (
 )
 from ravenchart.gen.emit.ada.expressions import (
     BOX,
-    Attribute,
     Expr,
-    OperatorChain,
     all_else,
     arguments,
-    call,
     number,
 )
 from ravenchart.gen.emit.ada.named import DottedName, Named, ref
@@ -43,13 +40,10 @@ from ravenchart.gen.emit.ada.naming import (
     value,
 )
 from ravenchart.gen.emit.ada.statements import (
-    NULL,
     Assign,
     Comment,
     Pragma,
-    Return,
     Stmt,
-    case_of,
     do,
 )
 from ravenchart.gen.emit.charts.shape import RegionShape
@@ -77,27 +71,33 @@ from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_ob
 from ravenchart.gen.emit.components.contracts import stored_type
 from ravenchart.gen.emit.components.packages import activity_package, published_type
 from ravenchart.gen.emit.language.configurations import Configurations
-from ravenchart.gen.emit.language.events import name_of, name_type, null_event
-from ravenchart.gen.emit.language.own_names import event_literal
+from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.tables.core_units import at_core
 from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spec
 from ravenchart.gen.emit.tables.port_calls import CROSSINGS, VISIBLE, put_of
-from ravenchart.gen.emit.tables.trace_calls import (
-    element_constant,
-    fault_units,
-    note_of,
-)
+from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.commands import Need, Provided
-from ravenchart.gen.model.component import Activity, Event, Port, PortKind
+from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.logical import links_by_port
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
 from .fills import fill_bodies, fill_specs, queued_regions
 from .instants import instant_objects, next_instants, units_of_instants
-from .offers import ANSWERED, OFFERS, enqueue, offers_of_port, offers_of_region, overflowed, put
-from .releasing import call_spec, call_wait, releases, wait_body, wait_spec, wakes
+from .offering import asked, offer_steps
+from .offers import ANSWERED, OFFERS, offers_of_port, offers_of_region, overflowed, put
+from .releasing import (
+    by_events,
+    call_spec,
+    call_wait,
+    event_spec,
+    event_wait,
+    queue_units,
+    releases,
+    wait_body,
+    wait_spec,
+)
 from .rows import Rows
 from .site import Site
 from .transmission import answering
@@ -140,11 +140,7 @@ class Glue(Site):
             names |= {ref(root, "Trace"), ref(root, "Elements"), ref("Ravenchart.Traces")}
         if recording(self.system):
             names.add(ref(root, UNIT))
-        woken = any(releases(self, port) for port in component.inputs())
-        if woken or any(wakes(self, one) for one in self._served()):
-            names.add(ref("Ravenchart.Releasing_Queues"))  # and no other queue: see `releases`
-        elif queued or self._served():
-            names.add(ref("Ravenchart.Queues"))
+        names |= queue_units(self, self._served())
         if any(b.instance == self.instance.name for b in self.system.bindings):
             names.add(ref("Ravenchart.Queueing"))
         names |= set(units_of(self.system, self.instance))
@@ -157,7 +153,7 @@ class Glue(Site):
             names.add(ref(root, self.component, activity_package(component, activity)))
         names |= {ref(root, unit) for unit in providers(self.system, self.instance)}
         for event in component.events:
-            names |= {ref(root, ada_case(bus)) for bus in self._asked(event.name)}
+            names |= {ref(root, ada_case(bus)) for bus in asked(self, event.name)}
         names |= {ref(root, unit) for unit in self._units_of_ports()}
         names |= answering(self.system, self.instance)
         names |= set(units_of_instants(self))
@@ -198,6 +194,7 @@ class Glue(Site):
             )
         items += self._command_specs()
         items += [spec for one in self._served() for spec in call_spec(self, one)]
+        items += [spec for one in self.instance.component.regions for spec in event_spec(self, one)]
         items += fill_specs(self)
         if self._slots():
             items.insert(0, UseType(ELEMENT_ID))
@@ -275,9 +272,10 @@ class Glue(Site):
         items += [self._put_body(p) for p in self._connected_inputs()]
         items += [body for p in self._connected_inputs() for body in wait_body(self, p)]
         if component.events:
-            items.append(self._offer_body())
+            items.append(Subprogram("Offer", self._offer_spec().params, body=offer_steps(self)))
         items += self._command_bodies()
         items += [body for one in self._served() for body in call_wait(self, one)]
+        items += [body for one in component.regions for body in event_wait(self, one)]
         items += fill_bodies(self)
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
@@ -393,6 +391,7 @@ class Glue(Site):
                         region.queue_depth,
                         region.overflow,
                         f"{region.name}.queue",
+                        ref(RUNTIME, "Releasing_Events" if by_events(self, region) else "Queues"),
                     )
                 )
                 items += offers_of_region(self, region, event)
@@ -422,46 +421,6 @@ class Glue(Site):
             )
         body = (*noted, put(port.name, ref("Item")))
         return Subprogram(f"Put_{name}", self._put_spec(port).params, body=body)
-
-    def _offer_body(self) -> Subprogram:
-        """Offer an event to the regions that it is for, and trace it, once for all events."""
-        component = self.instance.component
-        name = name_of(component, "Item")
-        queued = {event.name: self._offered(event) for event in component.events}
-        noted = note_of(self.system, "Raised", self._number_of_event(name))
-        body: tuple[Stmt, ...]
-        if len(set(queued.values())) == 1 and all(queued.values()):
-            body = (*next(iter(queued.values())), *noted)
-        else:
-            some = any(queued.values())
-            unheard = (Return(),) if noted and some else (NULL,)
-            rows = [
-                (ref(self.component, event_literal(event.name)), queued[event.name] or unheard)
-                for event in component.events
-            ]
-            body = (case_of(name, rows), *(noted if some else ()))
-        return Subprogram("Offer", self._offer_spec().params, body=body)
-
-    def _number_of_event(self, name: DottedName) -> Expr:
-        """The element number of an event: those of an instance follow each other."""
-        component = self.instance.component
-        first = ref("Elements", element_constant(self._element(component.events[0].name), "event"))
-        position = call(Attribute(ref(self.component, name_type(component)), "Pos"), name)
-        return OperatorChain("+", (first, call(ELEMENT_ID, position)))
-
-    def _offered(self, event: Event) -> tuple[Stmt, ...]:
-        """Queue an event for each region that it is for, and ask buses to recover."""
-        component = self.instance.component
-        heard = [r for r in component.regions if event.name in r.events()]
-        steps = [enqueue(component, region, event, ref("Item")) for region in heard]
-        for bus in self._asked(event.name):
-            steps.append(do(ref(ada_case(bus), "Controller.Request_Recovery")))
-        return tuple(steps)
-
-    def _asked(self, event: str) -> tuple[str, ...]:
-        """The buses that an event asks to recover."""
-        pair = self.instance.name, event
-        return tuple(bus.name for bus in self.system.buses if pair in bus.recovers_on)
 
     def _send_body(self, port: Port) -> Subprogram:
         if port.is_command:

@@ -65,7 +65,7 @@ from ravenchart.gen.emit.tables.trace_calls import (
 )
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
-from ravenchart.gen.model.instances import End, Requests
+from ravenchart.gen.model.instances import End, Events, Requests
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
@@ -317,9 +317,9 @@ def _on_other_core(
 
 
 def _wait(processor: Processor) -> DottedName:
-    """The call in which a sporadic processor waits: for a frame of a bus, or a value of a port."""
+    """The call in which a sporadic processor waits: for a frame, or for what its queue takes."""
     by = processor.released_by
-    if isinstance(by, End | Requests):
+    if isinstance(by, End | Requests | Events):
         return ref(ada_case(by.instance), f"Await_{ada_case(by.name)}")
     return ref(ada_case(by or ""), "Receiver.Wait")
 

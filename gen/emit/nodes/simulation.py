@@ -55,7 +55,7 @@ from ravenchart.gen.emit.tables.executions import ELEMENT_ID
 from ravenchart.gen.emit.tables.port_calls import CROSSINGS, put_of
 from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, Type, Value
 from ravenchart.gen.model.component import Port
-from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.instances import End, Events, Instance
 from ravenchart.gen.model.logical import links_by_port, logical_links
 from ravenchart.gen.model.system import Processor, Slot, System
 
@@ -174,8 +174,9 @@ def emit_simulation(system: System, header: str) -> Unit:
                     kind="procedure",
                 ),
                 *((Object("Started", "Boolean"),) if has_lifecycle(system) else ()),
+                *((Object("Unused", ELEMENT_ID),) if _starts(root, woken) else ()),
             ),
-            body=(*_start(system), do("Run")),
+            body=(*_start(system), *_starts(root, woken), do("Run")),
         ),
     )
 
@@ -187,7 +188,7 @@ def _run(root: str, slot: Slot) -> tuple[Stmt, ...]:
 
 
 def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
-    """The processors that ports release: the first ``Last`` of them run what waits and is due."""
+    """The processors that queues release: the first ``Last`` of them run what waits and is due."""
     if not woken:
         return
     body: list[Stmt] = []
@@ -221,6 +222,16 @@ def _start(system: System) -> tuple[Stmt, ...]:
     failed = RaiseStatement(ref("Program_Error"), words)
     start = do(ref(root_package(system), LIFECYCLE, "Start_All"), ref("Started"))
     return start, IfStatement(((Prefix("not", ref("Started")), (failed,)),))
+
+
+def _starts(root: str, woken: Sequence[Processor]) -> tuple[Stmt, ...]:
+    """The starts of regions whose events release a processor: before the first instant."""
+    found: list[Stmt] = []
+    for taken in (processor.released_by for processor in woken):
+        if isinstance(taken, Events):
+            run = ref(root, ada_case(taken.instance), f"Run_{ada_case(taken.name)}")
+            found += [Assign("Unused", number(0)), do(run, ref("Unused"))]
+    return tuple(found)
 
 
 def _integers(count: int) -> ArrayDefinition:
