@@ -84,6 +84,9 @@ LOGICAL_UNITS = ("instance_logical.ads", "ravenchart-logical_times.ads")
 EVENTS = "runtime-events"
 """The part of the runtime that controllers need of which events release processors."""
 EVENT_UNITS = ("instance_releasing_events.ads",)
+INTERRUPTS = "runtime-interrupts"
+"""The part of the runtime that controllers need which take interrupts."""
+INTERRUPT_UNITS = ("instance_interrupts.ads",)
 
 
 class UnknownTargetError(ValueError):
@@ -100,7 +103,9 @@ class Target:
 
     def reasons(self) -> dict[str, str]:
         """Why something of it may be outside SPARK."""
-        own = outside_spark.reasons_for_model(self.folder, slots=True) if self.folder else {}
+        own = {}
+        if self.folder is not None:
+            own = outside_spark.reasons_for_model(self.folder, slots=True, interrupts=True)
         return {**outside_spark.reasons_for_target(OUTSIDE, self.name), **own}
 
 
@@ -116,6 +121,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
         VALUES: partial(_instances, VALUES, *RECORDING),
         LOGICAL: partial(_instances, LOGICAL, *LOGICAL_UNITS),
         EVENTS: partial(_instances, EVENTS, *EVENT_UNITS),
+        INTERRUPTS: partial(_instances, INTERRUPTS, *INTERRUPT_UNITS),
         BUS: _bus,
         KERNEL: _kernel,
     }

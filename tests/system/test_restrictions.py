@@ -81,6 +81,17 @@ def test_the_runtime_and_the_hal_keep_the_restrictions(mode: str, tmp_path: Path
     assert all("violation of restriction" in text for text in found.values()), found
 
 
+@pytest.mark.parametrize("mode", MODES)
+def test_the_unit_of_a_board_that_takes_interrupts_keeps_them(mode: str, tmp_path: Path) -> None:
+    """By the compiler of this machine: no run-time library of a board is needed for that."""
+    board, common = RUNTIME / "zynqmp", RUNTIME / "src"
+    paths = [
+        board / "ravenchart-interrupt_lines.adb",
+        common / "ravenchart-interrupt_sources.adb",
+    ]
+    assert refused(paths, [board, common], mode, tmp_path) == {}
+
+
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_generated_programs_keep_the_restrictions_with_their_contracts(
     example: str, tmp_path: Path
