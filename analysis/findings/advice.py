@@ -83,6 +83,7 @@ def of_model(analysis: Analysis) -> Advice | None:
             wcets[task.element] = [(task.element, "")]
         wcets |= {slot.element: [(task.element, slot.element)] for slot in task.slots}
     own = {f"{node.name}.{name}" for node in system.nodes for name in (PROBE, SUPERVISOR)}
+    own |= {str(p.released_by_interrupt) for p in system.processors if p.released_by_interrupt}
     free = [t for t in system.tasks if t.released_by is None and t.element not in own]
     periods = [task.element for task in free if not task.sporadic]
     periods += [message.element for message in system.messages if message.source is None]

@@ -35,6 +35,7 @@ from ravenchart.gen.model.buses import Message, Reception
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Events, Requests
 from ravenchart.gen.model.logical import links_by_port, saved_wait, timed_row
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
@@ -169,6 +170,9 @@ class Latencies:
                 continue
             if kept:
                 steps[-1] = replace(steps[-1], keeps=kept)
+            line = self.rows[row][0].released_by_interrupt
+            if line is not None and not steps:
+                steps.append(ChainStep(str(line), HopKind.RELEASED))
             steps.append(self._row(row, port, place, steps, released))
             kept = self._kept(place, following) if port is None else self._rarely(place, following)
         if kept:
@@ -233,6 +237,8 @@ class Latencies:
         if isinstance(called, Requests) and steps and self.rows[row][1] == 0:
             made = ChainStep(row, HopKind.WOKEN, puts=calls_at_once(self.system, called))
             return self._rare(made, self.rows[row][0], steps[-1].name)
+        if isinstance(called, InterruptLine) and steps and steps[-1].name == str(called):
+            return self._rare(ChainStep(row, HopKind.WOKEN), self.rows[row][0], steps[-1].name)
         if isinstance(called, Events) and steps and row == str(called):
             raised = raised_at_once(self.system, called).get(steps[-1].name, 0)
             if raised:
@@ -285,8 +291,10 @@ class Latencies:
         """
         response = self.found.responses[processor.name].bound
         if step.hop is HopKind.SAMPLED:
-            what = "an event" if isinstance(processor.released_by, Events) else "a value"
-            waits = f"{step.name} runs only when {what} for {processor.released_by} comes"
+            by = processor.released_by
+            what = "an event for" if isinstance(by, Events) else "a value for"
+            what = "the interrupt" if isinstance(by, InterruptLine) else what
+            waits = f"{step.name} runs only when {what} {by} comes"
             return replace(step, waits=waits, keeps=waits)
         period = self.network.items()[sender].period
         if period < step.puts * processor.period:

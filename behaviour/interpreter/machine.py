@@ -4,8 +4,8 @@
 """A whole system in virtual time.
 
 At each instant every processor that is due runs its table in order, the highest
-priority first. An execution takes no time. A processor that a port or region releases is due
-when a value or event waits there and its separation is over; its releases are at such
+priority first. An execution takes no time. A processor that a queue or interrupt releases is due
+when something has come there and its separation is over; its releases are at such
 instants too. A processor that a bus releases does not run: received values come as
 stimuli, and values sent on a bus are discarded. Activities that the user writes do
 nothing.
@@ -20,12 +20,13 @@ from ravenchart.gen.language.terms import Ns, Value
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import End, Events, Instance
 from ravenchart.gen.model.logical import logical_links
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.statechart import DONE, OnEvent, Overflow, Region
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
 from .expressions import Outbox, PortReading, View, least_value, perform
 from .region import RegionRun
-from .stimuli import Arrived, Raised, Stimuli
+from .stimuli import Arrived, InterruptCame, Raised, Stimuli, Stimulus
 from .traces import StepRecord, ValueRecord
 
 
@@ -193,10 +194,13 @@ class Machine:
             for row in link.rows
         }
         self._periodic = [one for one in system.processors if one.released_by is None]
-        woken = (one for one in system.processors if isinstance(one.released_by, End | Events))
+        kinds = End | Events | InterruptLine
+        woken = (one for one in system.processors if isinstance(one.released_by, kinds))
         self._woken = sorted(woken, key=lambda one: -one.priority)
         self.earliest = {one.name: 0 for one in self._woken}
-        """The earliest next release of each processor that a port or region releases."""
+        """The earliest next release of each processor that a queue or interrupt releases."""
+        self.accepted: frozenset[InterruptLine] = frozenset()
+        """The interrupts that have not released their processors yet."""
         self.started = False
         """The regions whose events release a processor have made their start."""
         self.values: list[ValueRecord] = []
@@ -206,13 +210,13 @@ class Machine:
         """Run up to the last instant; the steps that executed a behaviour."""
         coming = deque(stimuli.entries)
         for now, slots in self.instants(stimuli.until):
-            due: list[Raised | Arrived] = []
+            due: list[Stimulus] = []
             while coming and coming[0].at <= now:
                 due.append(coming.popleft())
             yield from self.execute(now, slots, due)
 
     def execute(
-        self, now: Ns, slots: Iterable[Slot], entries: Iterable[Raised | Arrived] = ()
+        self, now: Ns, slots: Iterable[Slot], entries: Iterable[Stimulus] = ()
     ) -> Iterator[StepRecord]:
         """Execute one instant: first the stimuli from outside, then the rows."""
         yield from self._start()
@@ -234,8 +238,10 @@ class Machine:
             if isinstance(taken, Events):
                 yield from self._run_region(Ns(0), self.instances[taken.instance], taken.name)
 
-    def _waits(self, queue: End | Events) -> bool:
-        """Whether a queue has something for the processor that it releases."""
+    def _waits(self, queue: End | Events | InterruptLine) -> bool:
+        """Whether something has come that releases a processor."""
+        if isinstance(queue, InterruptLine):
+            return queue in self.accepted
         own = self.instances[queue.instance]
         if isinstance(queue, End):
             return bool(own.mailboxes[queue.name].waiting)
@@ -249,7 +255,8 @@ class Machine:
             due = before is None or (one.priority > before.priority)
             if not due or now < self.earliest[one.name]:
                 continue
-            if isinstance(queue, End | Events) and self._waits(queue):
+            if isinstance(queue, End | Events | InterruptLine) and self._waits(queue):
+                self.accepted -= {queue}
                 self.earliest[one.name] = now + one.period
                 for slot in one.slots:
                     yield from self._execute(now, slot)
@@ -279,12 +286,20 @@ class Machine:
         ]
         return now, slots
 
-    def _take(self, entry: Raised | Arrived, now: int) -> None:
+    def _take(self, entry: Stimulus, now: int) -> None:
         match entry:
             case Raised():
                 self.instances[entry.instance].offer(entry.event, entry.value)
             case Arrived():
                 self._put(entry.end, entry.value, now)
+            case InterruptCame():
+                self._interrupt(entry.line, now)
+
+    def _interrupt(self, line: InterruptLine, now: int) -> None:
+        """Accept an interrupt once the separation of its processor is over."""
+        released = (one for one in self._woken if one.released_by == line)
+        if all(now >= self.earliest[one.name] for one in released):
+            self.accepted |= {line}
 
     def _put(self, end: End, value: Value, visible: int) -> None:
         self.instances[end.instance].mailboxes[end.name].put(value, visible)

@@ -6,6 +6,7 @@
     - {at: 50 ms, raise: motor.Start}
     - {at: 60 ms, raise: motor.Go, with: 250}
     - {at: 70 ms, put: motor.order, value: {kind: Move, target: 1000}}
+    - {at: 75 ms, interrupt: board.limit}
     - {until: 2 s}
 
 Times count from the epoch of the processors and never decrease. At each instant the
@@ -37,6 +38,7 @@ from ravenchart.gen.language.terms import (
     named,
 )
 from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.statechart import DONE
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -74,10 +76,32 @@ class Arrived:
 
 
 @dataclass(frozen=True, slots=True)
+class InterruptCame:
+    """An interrupt of a node."""
+
+    at: Ns
+    line: InterruptLine
+
+    @property
+    def receiver(self) -> tuple[str, str]:
+        """Node and interrupt."""
+        return self.line.node, self.line.name
+
+    @property
+    def value(self) -> None:
+        """It carries none."""
+        return
+
+
+Stimulus = Raised | Arrived | InterruptCame
+"""An event, value or interrupt from outside."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stimuli:
     """The stimuli in order of time, and the last instant."""
 
-    entries: tuple[Raised | Arrived, ...]
+    entries: tuple[Stimulus, ...]
     until: Ns
 
 
@@ -95,6 +119,8 @@ def written_stimuli(stimuli: Stimuli, comments: Iterable[str] = ()) -> str:
             case Arrived(end=end, value=value):
                 port = f"{end.instance}.{end.name}"
                 lines.append(f"- {{at: {at}, put: {port}, value: {_text(value)}}}")
+            case InterruptCame(line=line):
+                lines.append(f"- {{at: {at}, interrupt: {line}}}")
     lines.append(f"- {{until: {shown(stimuli.until) if stimuli.until else 0}}}")
     return "".join(f"{line}\n" for line in lines)
 
@@ -106,8 +132,8 @@ def _text(value: Value) -> str:
     return {"True": "true", "False": "false"}.get(str(value), str(value))
 
 
-KEYS = {"at", "raise", "with", "put", "value", "until"}
-FORMS = "`{at, raise, with}`, `{at, put, value}` or, at the end, `{until}`"
+KEYS = {"at", "raise", "with", "put", "value", "interrupt", "until"}
+FORMS = "`{at, raise, with}`, `{at, put, value}`, `{at, interrupt}` or, at the end, `{until}`"
 
 
 def read_stimuli(
@@ -145,7 +171,7 @@ class _Reading:
 
     system: System
     found: list[Diagnostic]
-    entries: list[Raised | Arrived] = field(default_factory=list)
+    entries: list[Stimulus] = field(default_factory=list)
     now: Ns = NO_TIME
 
     def wrong(self, code: str, origin: Origin, message: str, hint: str | None = None) -> None:
@@ -157,7 +183,8 @@ class _Reading:
         keys = set(item)
         if keys == {"until"}:
             return self.time(item, "until")
-        known = next((k for k in ({"raise", "with"}, {"put", "value"}) if keys & k), {"raise"})
+        forms = {"raise", "with"}, {"put", "value"}, {"interrupt"}
+        known = next((form for form in forms if keys & form), {"raise"})
         wanted = {"at", *known}
         slips = {key: nearest(key, KEYS - keys) for key in item if key not in wanted}
         for key, meant in slips.items():
@@ -172,8 +199,10 @@ class _Reading:
             at = self.time(item, "at")
             if at is not None and "raise" in item:
                 self.raised(at, item)
-            elif at is not None:
+            elif at is not None and "put" in item:
                 self.put(at, item)
+            elif at is not None:
+                self.interrupt(at, item)
         return None
 
     def time(self, item: Map, key: str) -> Ns | None:
@@ -236,6 +265,19 @@ class _Reading:
         value = self.value(port.type, item, "value")
         if value is not None:
             self.entries.append(Arrived(at, End(instance.name, port.name), value))
+
+    def interrupt(self, at: Ns, item: Map) -> None:
+        """An interrupt of a node that releases a processor."""
+        origin, text = item.values_at["interrupt"].origin, str(item["interrupt"])
+        found = (one.released_by_interrupt for one in self.system.processors)
+        lines = {str(line).lower(): line for line in found if line is not None}
+        line = lines.get(text.lower())
+        if line is None:
+            names = ", ".join(map(str, lines.values()))
+            hint = f"one of: {names}" if names else "the model has none"
+            self.wrong("RV-1004", origin, f"there is no interrupt `{text}`", hint)
+        else:
+            self.entries.append(InterruptCame(at, line))
 
     def member(self, item: Map, key: str) -> tuple[Instance, str] | None:
         """The instance of ``instance.name``, and the name."""

@@ -36,6 +36,7 @@ def events_schema() -> dict[str, Any]:
     value, at = {"$ref": "#/$defs/Value"}, {"$ref": "#/$defs/Time"}
     raised = {"raise": _receiver("instance.event"), "with": value}
     arrived = {"put": _receiver("instance.port"), "value": value}
+    interrupted = {"interrupt": _receiver("node.interrupt")}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Ravenchart: an event file",
@@ -45,6 +46,7 @@ def events_schema() -> dict[str, Any]:
             "anyOf": [
                 _entry("An event of an instance.", ["at", "raise"], at=at, **raised),
                 _entry("A value for an input port.", ["at", "put", "value"], at=at, **arrived),
+                _entry("An interrupt of a node.", ["at", "interrupt"], at=at, **interrupted),
                 _entry("The last instant; the last entry.", ["until"], until=at),
             ]
         },

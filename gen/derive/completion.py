@@ -135,6 +135,13 @@ def tasks_of(system: System) -> tuple[Task, ...]:
             for driver, node, releaser in ways
         ]
     above = top + (2 if system.messages else 1)
+    for released in system.processors:
+        if (line := released.released_by_interrupt) is not None:
+            host, interrupt = system.node(line.node), system.interrupt(line)
+            level = above + (host.supervision is not None) + (host.probe is not None)
+            times = released.period, released.period, interrupt.wcet
+            made = _own_task(host, interrupt.name, *times, level)
+            tasks.append(replace(made, origin=interrupt.origin, timed=False, sporadic=True))
     for host in system.nodes:
         if (one := host.supervision) is not None:
             tasks.append(_own_task(host, SUPERVISOR, one.period, one.period, one.wcet, above))

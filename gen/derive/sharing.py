@@ -309,6 +309,8 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         if processor.core in away:
             users.append(reporter(system.node(processor.node), processor.core))
         objects.append(sharing.made(f"{processor.name}.monitor", users))
+        if (line := processor.released_by_interrupt) is not None:
+            objects.append(sharing.made(f"{line}.arrivals", [str(line), processor.name]))
     supervisors = {f"{node.name}.{SUPERVISOR}" for node in system.nodes}
     kept = ["health", *(["trace"] if any(node.trace_depth for node in system.nodes) else [])]
     kept += [OBJECT] if system.recorded_values else []

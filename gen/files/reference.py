@@ -61,6 +61,7 @@ TITLES: Mapping[str, str] = {
     "NodeForm": "Node",
     "ProbeForm": "Probe",
     "SupervisionForm": "Supervision",
+    "InterruptForm": "Interrupt",
     "StreamForm": "Stream",
     "TickForm": "Tick",
     "BusForm": "Bus",

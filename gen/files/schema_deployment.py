@@ -14,6 +14,7 @@ from .schema_base import (
     Constant,
     DatabaseName,
     Element,
+    Name,
     PathReference,
     PositiveSpan,
     Reference,
@@ -48,6 +49,21 @@ class SupervisionForm(Element):
     margin: PositiveSpan = key(
         "Time beyond its deadline within which a release must have completed, or its processor is "
         "silent; on a workstation longer than the host withholds the core."
+    )
+
+
+class InterruptForm(Element):
+    """An interrupt of a node, which releases one sporadic processor."""
+
+    signal: Literal["SIGUSR1", "SIGUSR2"] | None = optional(
+        "The signal that stands for it where the program runs under Linux."
+    )
+    number: int | None = optional(
+        "Its number at the interrupt controller of a board.", ge=1, le=1019
+    )
+    wcet: PositiveSpan = key(
+        "Worst-case execution time of taking it: the entry into its handler, the handler, and the "
+        "task above all others that wakes the processor."
     )
 
 
@@ -86,6 +102,10 @@ class NodeForm(Element):
     supervision: SupervisionForm | None = optional(
         "A task above all processors and drivers that finds processors which no longer complete "
         "their releases; none unless given."
+    )
+    interrupts: dict[Name, InterruptForm] | None = optional(
+        "Interrupts that release processors of the node (`released_by: node.interrupt`).",
+        min_length=1,
     )
     stream: StreamForm | None = optional(
         "The main program at the lowest priority, which hands the trace and ten snapshots a second "
@@ -192,9 +212,9 @@ class ProcessorForm(Element):
     )
     released_by: PathReference | None = optional(
         "The bus, the queued input port `instance.port`, the provided interface "
-        "`instance.Interface`, or the region `instance.Region` that releases it: then it is "
-        "sporadic. It handles the reception of the bus, the values of the port, the calls of the "
-        "interface, or the events of the region."
+        "`instance.Interface`, the region `instance.Region`, or the interrupt `node.interrupt` "
+        "that releases it: then it is sporadic. It handles the reception of the bus, the values "
+        "of the port, the calls of the interface, the events of the region, or each interrupt."
     )
     core: int = PydanticField(
         default=1, ge=1, description="The core of the node that runs it, counted from 1."

@@ -52,7 +52,7 @@ class Events:
 
 
 Queue = End | Requests | Events
-"""What can release a processor and is in an instance: a port, an interface or a region."""
+"""A queue in an instance that can release a processor: of a port, an interface or a region."""
 
 
 @dataclass(frozen=True, slots=True)

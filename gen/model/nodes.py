@@ -66,6 +66,33 @@ class Supervision:
 
 
 @dataclass(frozen=True, slots=True)
+class Interrupt:
+    """An interrupt of a node; the processor that it releases says how far two of them are apart.
+
+    ``signal`` stands for it where the program runs under Linux, ``number`` is that of a board.
+    ``wcet`` counts above all tasks.
+    """
+
+    name: str
+    origin: Origin
+    signal: str | None
+    number: int | None
+    wcet: Ns
+
+
+@dataclass(frozen=True, slots=True)
+class InterruptLine:
+    """The interrupt of a node that releases a processor."""
+
+    node: str
+    name: str
+
+    def __str__(self) -> str:
+        """``node.interrupt``."""
+        return f"{self.node}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
 class Node:
     """One processor core or several alike, with platform figures, all worst cases in ns."""
 
@@ -85,6 +112,7 @@ class Node:
     cores: int = 1
     supervision: Supervision | None = None
     stream: MonitorStream | None = None
+    interrupts: tuple[Interrupt, ...] = ()
     database_name: str | None = None
     """Its name in databases; None: that in the model."""
 

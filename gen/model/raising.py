@@ -77,7 +77,7 @@ def more_events(system: System, taken: Events, row: str) -> str:
 
 
 def _from_outside(system: System, taken: Events, own: Region) -> Iterator[str]:
-    """What raises events of a region and is no row of its instance, in words."""
+    """Sources of the events of a region that are no rows of its instance, in words."""
     component, events = system.instance(taken.instance).component, set(own.events())
     for region in component.regions:
         if region.on_overflow in events:

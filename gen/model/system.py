@@ -24,7 +24,7 @@ from .buses import Bus, Message, Reception
 from .commands import Binding, Device, Poll
 from .component import Component
 from .instances import Connection, End, Events, Instance, Queue, Requests
-from .nodes import Node
+from .nodes import Interrupt, InterruptLine, Node
 from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
 from .statechart import Timing
@@ -81,8 +81,8 @@ class Slot:
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
-    That is a bus whose frames it receives, or a queue: of an input port, of the calls of a provided
-    interface, or of the events of a region.
+    That is a bus whose frames it receives, a queue (of an input port, of the calls of a provided
+    interface, or of the events of a region), or an interrupt.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -95,7 +95,7 @@ class Processor:
     deadline: Ns
     priority: int
     stack_bytes: int
-    released_by: str | Queue | None
+    released_by: str | Queue | InterruptLine | None
     slots: tuple[Slot, ...]
     on_deadline_miss: tuple[tuple[str, str], ...]
     """(instance, event) raised when a release completes after its deadline."""
@@ -118,9 +118,14 @@ class Processor:
         return self.released_by if isinstance(self.released_by, End) else None
 
     @property
-    def released_by_value(self) -> Queue | None:
-        """The queue whose values, calls or events release it."""
+    def released_by_value(self) -> Queue | InterruptLine | None:
+        """The queue whose values, calls or events release it, or the interrupt that does."""
         return None if isinstance(self.released_by, str) else self.released_by
+
+    @property
+    def released_by_interrupt(self) -> InterruptLine | None:
+        """The interrupt that releases it; None where time, a bus or a queue does."""
+        return self.released_by if isinstance(self.released_by, InterruptLine) else None
 
     @property
     def raises(self) -> tuple[tuple[str, str], ...]:
@@ -390,7 +395,7 @@ class System:
         homes = tuple(dict.fromkeys(self.home(end) for end in message.targets))
         return tuple(Reception(message, home, len(homes) > 1) for home in homes)
 
-    def received(self, bus: str | Queue | None, node: str) -> tuple[Reception, ...]:
+    def received(self, bus: str | Queue | InterruptLine | None, node: str) -> tuple[Reception, ...]:
         """The receptions of a node from a bus, in model order."""
         found = (one for m in self.messages if m.bus == bus for one in self.receptions(m))
         return tuple(one for one in found if one.node == node)
@@ -466,6 +471,10 @@ class System:
     def called(self, served: Requests | Events) -> Processor | None:
         """The processor that calls of an interface, or events of a region, release; else None."""
         return next((one for one in self.processors if one.released_by == served), None)
+
+    def interrupt(self, line: InterruptLine) -> Interrupt:
+        """The interrupt of a line; KeyError where there is none."""
+        return named(self.node(line.node).interrupts, line.name)
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""

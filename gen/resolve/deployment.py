@@ -11,6 +11,7 @@ from dataclasses import replace
 from ravenchart.gen.derive.completion import table_deadline, table_period
 from ravenchart.gen.files.schema_deployment import (
     ChainForm,
+    InterruptForm,
     NodeForm,
     ProcessorForm,
     ShutdownForm,
@@ -27,7 +28,15 @@ from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
 from ravenchart.gen.model.instances import End
-from ravenchart.gen.model.nodes import SNAPSHOT_PERIOD, MonitorStream, Node, Supervision, Tick
+from ravenchart.gen.model.nodes import (
+    SNAPSHOT_PERIOD,
+    Interrupt,
+    InterruptLine,
+    MonitorStream,
+    Node,
+    Supervision,
+    Tick,
+)
 from ravenchart.gen.model.statechart import Timing
 from ravenchart.gen.model.system import (
     Carried,
@@ -71,8 +80,18 @@ def node_of(name: str, form: NodeForm, findings: Findings) -> Node:
         form.cores,
         _supervision(form.supervision, findings),
         _stream(form.stream, findings),
+        tuple(_interrupt(key, one, findings) for key, one in (form.interrupts or {}).items()),
         form.database_name,
     )
+
+
+def _interrupt(name: str, form: InterruptForm, findings: Findings) -> Interrupt:
+    """An interrupt, which comes from somewhere on one target at least."""
+    if form.signal is None and form.number is None and not form.damaged:
+        message = f"the interrupt {name} has neither `signal` nor `number`"
+        hint = "add `signal: SIGUSR1` for Linux, the `number` at a board, or both"
+        findings.error("RV-0202", form.origin, message, hint=hint)
+    return Interrupt(name, form.origin, form.signal, form.number, Ns(form.wcet))
 
 
 def _stream(form: StreamForm | None, findings: Findings) -> MonitorStream | None:
@@ -221,7 +240,7 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
     return Processor(
         name=name,
         origin=form.origin,
-        node="" if node is None else node.name,
+        node=_home(node, releaser),
         period=period,
         offset=Ns(form.offset),
         deadline=deadline,
@@ -237,6 +256,13 @@ def processor_of(name: str, form: ProcessorForm, site: DeploymentNames) -> Proce
         cyclic=cyclic,
         logical=None if form.logical_execution_time is None else Ns(form.logical_execution_time),
     )
+
+
+def _home(node: Node | None, releaser: object) -> str:
+    """The node of a processor: the given one, or that of the interrupt; else that of its rows."""
+    if node is not None:
+        return node.name
+    return releaser.node if isinstance(releaser, InterruptLine) else ""
 
 
 def _phased(

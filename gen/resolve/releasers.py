@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: Ravenchart contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What releases a sporadic processor: a bus, or the queue of a port, interface or region."""
+"""Names after `released_by`: of a bus, a queue in an instance, or an interrupt."""
 
 from __future__ import annotations
 
 from ravenchart.gen.language.names import NameScope, meant
 from ravenchart.gen.model.component import Direction, Port
 from ravenchart.gen.model.instances import End, Events, Instance, Queue, Requests
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.system import UNFIT_PORT
 from ravenchart.gen.origins import Origin
 
@@ -16,10 +17,15 @@ from .composites import connectable, provided_by
 from .paths import DeploymentNames, member_of
 
 
-def releaser_of(text: str, origin: Origin, site: DeploymentNames) -> str | Queue | None:
-    """The bus, input port, provided interface or region of that name."""
+def releaser_of(
+    text: str, origin: Origin, site: DeploymentNames
+) -> str | Queue | InterruptLine | None:
+    """The bus, input port, provided interface, region or interrupt of that name."""
     if "." not in text:
         return _bus(text, origin, site)
+    first, _, rest = text.partition(".")
+    if "." not in rest and site.nodes.knows(first) and not site.owners.knows(first):
+        return _interrupt(first, rest, origin, site)
     found = member_of(text, "bus or instance.port", origin, site)
     if found is None:
         return None
@@ -51,6 +57,20 @@ def _bus(text: str, origin: Origin, site: DeploymentNames) -> str | None:
         return None
     bus = site.buses.look_up(text, origin, site.findings)
     return None if bus is None else bus.name
+
+
+def _interrupt(
+    first: str, rest: str, origin: Origin, site: DeploymentNames
+) -> InterruptLine | None:
+    """An interrupt of a node."""
+    node = site.nodes.look_up(first, origin, site.findings)
+    if node is None:
+        return None
+    scope: NameScope[str] = NameScope(f"interrupt of {node.name}")
+    for one in node.interrupts:
+        scope.declare(one.name, one.origin, one.name)
+    found = scope.look_up(rest, origin, site.findings)
+    return None if found is None else InterruptLine(node.name, found)
 
 
 def _port(end: End, port: Port, origin: Origin, site: DeploymentNames) -> End | None:

@@ -12,14 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.commands import Device
 from ravenchart.gen.model.instances import Events, Instance
 from ravenchart.gen.model.raising import starts_with, taking_region
 from ravenchart.gen.model.statechart import After, Every, Region, When
 from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
 from ravenchart.gen.resolve.system import Resolved
 
-from .released_tables import TABLE, Problem, other_period
+from .released_tables import TABLE, Problem, other_period, waiting_rows
 
 
 def events_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -36,7 +35,8 @@ def events_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
         region = taking_region(system, taken)
         problems = [*_of_region(instance, region, str(taken))]
         if {"processors", "instances", "messages"} <= resolved.sound_sections:
-            problems += _of_rows(system, processor, instance, str(taken))
+            cannot = f"{taken} cannot release a processor"
+            problems += waiting_rows(system, processor, instance, cannot)
         at = processor.released_at or processor.origin
         for message, declared, words, hint in problems:
             yield error(UNFIT_PORT, at, message, notes=[(declared, words)], hint=hint)
@@ -45,7 +45,7 @@ def events_can_release(resolved: Resolved) -> Iterator[Diagnostic]:
 
 
 def _of_region(instance: Instance, region: Region, taken: str) -> Iterator[Problem]:
-    """What the region waits for, other than events."""
+    """Parts of the region that wait for something else than events."""
     cannot = f"{taken} cannot release a processor"
     here = f"{region.name} is declared here"
     if not region.events():
@@ -78,28 +78,6 @@ def _of_region(instance: Instance, region: Region, taken: str) -> Iterator[Probl
     for command in starts_with(instance.component, region)[:1]:
         message = f"{cannot}: its start calls `{command}`, before devices have been started"
         yield message, region.origin, here, "call it in a transition"
-
-
-def _of_rows(
-    system: System, processor: Processor, instance: Instance, taken: str
-) -> Iterator[Problem]:
-    """Calls and messages of the rows of its table that need time."""
-    cannot = f"{taken} cannot release a processor"
-    own = {slot.name for slot in processor.slots if slot.owner == instance.name}
-    rows = [row for row in instance.component.runnables() if row.name in own]
-    used = {name for row in rows for name in (*row.sends, *row.reads)}
-    for binding in system.bindings:
-        need = binding.need.name
-        afar = binding.instance == instance.name and need in used
-        if afar and not isinstance(binding.provider, Device | None):
-            message = f"{cannot}: its processor calls `{need}` of another component"
-            yield message, binding.origin, "that is bound here", "bind it to a device"
-    for sent in system.messages:
-        source = sent.source
-        if source is not None and source.instance == instance.name and source.name in used:
-            message = f"{cannot}: its processor sends {source} as the message {sent.name}"
-            words = f"{sent.name} is declared here"
-            yield message, sent.origin, words, "let a periodic activity send the message"
 
 
 def _table(system: System, processor: Processor, taken: Events) -> Iterator[Diagnostic]:

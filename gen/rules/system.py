@@ -29,6 +29,7 @@ from ravenchart.gen.resolve.system import Resolved
 
 from .buses import BUS_RULES
 from .components import COMPONENT_RULES
+from .interrupts import INTERRUPT_RULES
 from .nodes import NODE_RULES
 from .recording import RECORDING_RULES
 from .releases import RELEASE_RULES
@@ -415,5 +416,6 @@ RULES: tuple[Rule, ...] = (
     offsets_are_shorter_than_periods,
     reception_has_its_processor,
     *RELEASE_RULES,
+    *INTERRUPT_RULES,
     *RECORDING_RULES,
 )

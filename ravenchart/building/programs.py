@@ -105,6 +105,7 @@ class Program:
         hardware where a device has no address.
         """
         target = board.target if board else targets.target(NATIVE)
+        targets.check_interrupts(target, self.part)
         compilation = self.compilation(mode, driver, registers, board)
         made = compilation.image
 

@@ -129,6 +129,8 @@ class TargetForm(_Form):
     memory: dict[str, MemoryRegion] = {}
     stacks: Stacks = Stacks()
     can: tuple[CanController, ...] = ()
+    interrupts: Literal["signal", "number"] | None = None
+    """The key of an interrupt of the model that says where it comes from here; None: none come."""
     emulator: Emulator | None = None
 
 
@@ -242,6 +244,23 @@ def check_system(made: Board, system: System) -> tuple[str, ...]:
     if wrong:
         raise Refused("\n".join(wrong))
     return tuple(text for node in system.nodes for text in _short(made, node))
+
+
+def check_interrupts(chosen: Target, system: System) -> None:
+    """Refused where an interrupt of the model comes from nowhere on a target."""
+    key = chosen.facts.interrupts
+    for node in system.nodes:
+        for one in node.interrupts:
+            if key is None:
+                raise Refused(
+                    f"{one.origin}: error: programs for {chosen.name} take no interrupts, and "
+                    f"{one.name} releases a processor"
+                )
+            if getattr(one, key) is None:
+                raise Refused(
+                    f"{one.origin}: error: {one.name} has no `{key}`: it comes from nowhere on "
+                    f"{chosen.name}\n{one.origin}: hint: add `{key}` to the interrupt"
+                )
 
 
 def _late(made: Board, system: System, node: Node) -> Iterator[str]:

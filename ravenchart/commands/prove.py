@@ -11,7 +11,6 @@ from pathlib import Path
 
 from ravenchart.building import programs
 from ravenchart.failures import OK, WRONG
-from ravenchart.gen.derive.crossing import has_slots
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import stages
@@ -63,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
     libraries = [one for used in checked.libraries for one in programs.programs_of(used)]
     nodes = programs.programs_of(checked)
     made = [*libraries, *nodes]
-    reasons = outside_spark.reasons_for_model(checked.folder, slots=has_slots(checked.system))
+    reasons = outside_spark.reasons_of(checked.system, checked.folder)
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:

@@ -20,7 +20,6 @@ from ravenchart.building.checking import Checked
 from ravenchart.building.programs import Program
 from ravenchart.building.stacks import read_record
 from ravenchart.failures import Refused
-from ravenchart.gen.derive.crossing import has_slots
 from ravenchart.gen.emit.program import generate, library_files
 from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
@@ -122,7 +121,7 @@ def gather(
         nodes,
         tuple(_node(one, chosen, _of_library(one), why, given) for one in libraries),
         runtime,
-        tuple(outside_spark.reasons_for_model(folder, slots=has_slots(checked.system)).items()),
+        tuple(outside_spark.reasons_of(checked.system, folder).items()),
         reasons,
         why,
         sources,

@@ -55,6 +55,7 @@ WHERE: Mapping[str, Touched] = {
     "ASM-018": lambda system, _: bool(types_with_registers(system)),
     "ASM-019": lambda system, _: has_lifecycle(system),
     "ASM-023": lambda system, _: system.most_cores > 1,
+    "ASM-024": lambda system, _: any(node.interrupts for node in system.nodes),
 }
 """Where an entry is in use; every other one always is."""
 

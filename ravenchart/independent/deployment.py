@@ -318,6 +318,8 @@ class Deployment:
     def _releasing(self, end: str) -> str:
         """A queued port, an interface, or a region whose events release a processor."""
         owner, _, port = end.rpartition(".")
+        if self._interrupt(end) is not None:
+            return end
         parts = self.component_of(owner)
         if parts.map("provides").name(port) or parts.map("regions").name(port):
             return end
@@ -325,6 +327,16 @@ class Deployment:
         if ports.map(ports.name(port) or "").text("kind") != "queued":
             raise UnusableError(f"`{end}` is no queued port")
         return end
+
+    def _interrupt(self, end: str) -> tuple[str, str, Mapping] | None:
+        """Node, name and form of an interrupt; None for another end."""
+        owner, _, name = end.rpartition(".")
+        node = None if self.instances.name(owner) else self.nodes.name(owner)
+        if node is None:
+            return None
+        lines = self.nodes.map(node).map("interrupts")
+        own = lines.name(name) or name
+        return node, own, lines.map(own)
 
     def _row(self, text: str, form: Mapping, node: str) -> Row:
         owner, _, name = text.rpartition(".")
@@ -401,7 +413,7 @@ class Deployment:
         return found
 
     def _watchers(self) -> list[Task]:
-        """The supervisor and the probe of each node."""
+        """The supervisor, the probe and the interrupts of each node."""
         above = self.top + (2 if any(m.source or m.targets for m in self.messages) else 1)
         found: list[Task] = []
         for name, node in self.nodes.maps():
@@ -413,6 +425,11 @@ class Deployment:
                     timing = row.period, row.deadline, row.wcet
                     found.append(Task(f"{name}.{kind}", name, *timing, level))
                     level += 1
+            for task in self.processors:
+                line = None if task.port is None else self._interrupt(task.port)
+                if line is not None and line[0] == name:
+                    times = task.period, task.period, line[2].time("wcet")
+                    found.append(Task(f"{name}.{line[1]}", name, *times, level, port=task.port))
         return found
 
     def blocking(self, task: Task) -> int:

@@ -18,6 +18,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ravenchart.failures import Failure
+from ravenchart.gen.derive.crossing import has_slots
+from ravenchart.gen.model.system import System
 
 from .spark_results import Outside
 
@@ -30,17 +32,28 @@ OF_SLOTS = {
     "Ravenchart.Shared_Slots": "ASM-023",
 }
 """Parts of the runtime in programs whose mailboxes have slots, with the entry of assumptions.md."""
+OF_INTERRUPTS = {"Ravenchart.Interrupt_Sources": "ASM-024"}
+"""Those in programs that take interrupts."""
 
 
 class WrongList(Failure):
     """The file is no list of names with reasons; the text says where and why."""
 
 
-def reasons_for_model(folder: Path, *, slots: bool) -> dict[str, str]:
-    """Name to reason for a model in ``folder``; ``slots``: its programs have mailboxes of slots."""
+def reasons_for_model(folder: Path, *, slots: bool, interrupts: bool) -> dict[str, str]:
+    """Name to reason for a model in ``folder``.
+
+    ``slots``: its programs have mailboxes of slots; ``interrupts``: they take interrupts.
+    """
     path = folder / FILE
     own = _reasons(path, _table(path)) if path.is_file() else {}
-    return {**(OF_SLOTS if slots else {}), **own}
+    return {**(OF_SLOTS if slots else {}), **(OF_INTERRUPTS if interrupts else {}), **own}
+
+
+def reasons_of(system: System, folder: Path) -> dict[str, str]:
+    """Name to reason for the programs of a system, whose model is in ``folder``."""
+    interrupts = any(node.interrupts for node in system.nodes)
+    return reasons_for_model(folder, slots=has_slots(system), interrupts=interrupts)
 
 
 def reasons_for_target(path: Path, target: str) -> dict[str, str]:
@@ -78,7 +91,7 @@ def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outsi
 
 def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
     """Names of the list that cover nothing; those of the runtime need not."""
-    asked = (name for name in reasons if name not in OF_SLOTS)
+    asked = (name for name in reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS})
     return tuple(name for name in asked if not any(_covers(name, o) for o in found))
 
 

@@ -18,6 +18,7 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.instances import End, Events, Requests
 from ravenchart.gen.model.logical import LogicalLink, links_by_port
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
@@ -72,6 +73,9 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
             hops.append(_handler(system, place, hops))
         else:
             row = rows[place.name]
+            line = system.processor_of(str(place)).released_by_interrupt
+            if line is not None and not hops:
+                hops.append(ClaimedHop(str(line), "item", "released"))
             hops.append(_row(system, str(place), row, hops))
             if sure and isinstance(following, End):
                 sure = component.renews(row, following.name)
@@ -85,7 +89,12 @@ def _irregular(system: System, chain: Chain, hops: list[ClaimedHop]) -> list[Cla
     same value any number of times.
     """
     rare = any(m.sporadic and chain.way[:1] == (Carried(m.name),) for m in system.messages)
-    if rare and any(hop.how != "released" for hop in hops[1:]):
+    if hops and any(hops[0].element == str(p.released_by_interrupt) for p in system.processors):
+        rare, hops = True, list(hops)
+        passed = {"released", "woken"}
+    else:
+        passed = {"released"}
+    if rare and any(hop.how not in passed for hop in hops[1:]):
         return [replace(hops[0], sure=False), *hops[1:]]
     return hops
 
@@ -134,6 +143,8 @@ def _row(
     called = processor.released_by
     if isinstance(called, Requests) and hops and element == processor.slots[0].element:
         return ClaimedHop(element, "row", "woken", calls_at_once(system, called))
+    if isinstance(called, InterruptLine) and hops and hops[-1].element == str(called):
+        return ClaimedHop(element, "row", "woken")
     if isinstance(called, Events) and hops and element == str(called):
         raised = raised_at_once(system, called).get(hops[-1].element, 0)
         if raised:

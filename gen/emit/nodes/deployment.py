@@ -66,7 +66,7 @@ from ravenchart.gen.emit.tables.trace_calls import (
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.instances import End, Events, Requests
-from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.nodes import Interrupt, InterruptLine, Node
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
@@ -244,6 +244,10 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
             Minimum_Separation=fact(processor.name, "T"),
             Wait=_wait(processor),
         )
+    line = processor.released_by_interrupt
+    if line is not None:
+        items.append(Subprogram("Await"))
+        items.append(Comment(f"[{line}] suspend the processor until an interrupt is accepted."))
     if processor.on_overrun:
         shared += arguments(On_Executed=ref("On_Executed"))
         items += _budgets(processor)
@@ -260,16 +264,18 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         withs |= {ref("System"), ref(root, CERTIFICATE)}
     if processor.released_by is None:
         withs.add(ref("Ravenchart.Schedules"))
-    else:
+    elif line is None:
         withs.add(ref(root, _wait(processor).parent))
     context = fault_units(root)
+    context |= {_ARRIVALS, _SOURCES} if line is not None else set()
     context |= {_owner_unit(system, s) for s in processor.slots}
     context |= {ref(root, ada_case(i)) for i, _ in processor.raises}
     context |= {ref(root, ada_case(system.instance(i).component.name)) for i, _ in processor.raises}
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     spec = Package(name, tuple(items), (SPARK,))
-    bodies = (*_processor_body(system, processor), *own)
+    interrupts = () if line is None else _interrupts(processor, system.interrupt(line))
+    bodies = (*interrupts, *_processor_body(system, processor), *own)
     body = Package(name, bodies, (SPARK,), is_body=True)
     return [
         Unit(header, tuple(sorted(withs)), spec),
@@ -319,9 +325,39 @@ def _on_other_core(
 def _wait(processor: Processor) -> DottedName:
     """The call in which a sporadic processor waits: for a frame, or for what its queue takes."""
     by = processor.released_by
+    if isinstance(by, InterruptLine):
+        return ref("Await")
     if isinstance(by, End | Requests | Events):
         return ref(ada_case(by.instance), f"Await_{ada_case(by.name)}")
     return ref(ada_case(by or ""), "Receiver.Wait")
+
+
+_ARRIVALS, _SOURCES = ref("Ravenchart.Interrupt_Releases"), ref("Ravenchart.Interrupt_Sources")
+_SIGNALS = {"SIGUSR1": 10, "SIGUSR2": 12}
+"""Numbers of Linux."""
+
+
+def _interrupts(processor: Processor, interrupt: Interrupt) -> tuple[Decl, ...]:
+    """Where the interrupts of a processor come from, and how it waits for them."""
+    signal = 0 if interrupt.signal is None else _SIGNALS[interrupt.signal]
+    source = arguments(
+        Signal=number(signal), Number=number(interrupt.number or 0), Arrive=ref("Arrivals.Arrive")
+    )
+    lost = fault("Queue_Overflow", processor.name, "processor")
+    return (
+        Comment(f"[{processor.released_by}]"),
+        GenericInstance("Arrivals", _ARRIVALS, arguments(Separation=fact(processor.name, "T"))),
+        GenericInstance("Source", _SOURCES, source),
+        Pragma("Unreferenced", (ref("Source"),)),
+        Subprogram(
+            "Await",
+            declarations=(Object("Too_Soon", "Boolean"),),
+            body=(
+                do(ref("Arrivals.Wait"), ref("Too_Soon")),
+                IfStatement(((ref("Too_Soon"), (lost,)),)),
+            ),
+        ),
+    )
 
 
 def _checks(processor: Processor, offset: Expr) -> list[Decl]:

@@ -27,7 +27,9 @@ from ravenchart.gen.emit.ada.declarations import (
     Unit,
 )
 from ravenchart.gen.emit.ada.expressions import (
+    FALSE,
     OTHERS,
+    TRUE,
     Aggregate,
     Arg,
     Attribute,
@@ -57,13 +59,14 @@ from ravenchart.gen.language.terms import IntegerType, RecordType, ScalarType, T
 from ravenchart.gen.model.component import Port
 from ravenchart.gen.model.instances import End, Events, Instance
 from ravenchart.gen.model.logical import links_by_port, logical_links
+from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.system import Processor, Slot, System
 
 INTEGER = ref("Long_Long_Integer")
 """The type of times and of the numbers of stimuli."""
 
 Stimulus = tuple[str, str, Type | None]
-"""Instance, event or input port, and the type of its value."""
+"""Instance, event or input port, and the type of its value; or node and interrupt."""
 
 
 def simulated(system: System) -> System:
@@ -81,6 +84,8 @@ def stimuli(system: System) -> tuple[Stimulus, ...]:
         component = instance.component
         found += [(instance.name, e.name, e.type) for e in component.events]
         found += [(instance.name, p.name, p.type) for p in component.inputs()]
+    lines = (one.released_by_interrupt for one in system.processors)
+    found += [(line.node, line.name, None) for line in lines if line is not None]
     return tuple(found)
 
 
@@ -131,7 +136,7 @@ def emit_simulation(system: System, header: str) -> Unit:
         releases.append((plain(position), tuple(rows)))
     executes = any(rows for _, rows in releases)
     takes: list[tuple[Choice, tuple[Stmt, ...]]] = [
-        (plain(k), _taken(system, root, name, what, of_type))
+        (plain(k), _taken(system, root, woken, (name, what, of_type)))
         for k, (name, what, of_type) in enumerate(stimuli(system), 1)
     ]
     width = max((len(_scalars(t)) for _, _, t in stimuli(system) if t is not None), default=0)
@@ -200,9 +205,18 @@ def _waiting(root: str, woken: Sequence[Processor]) -> Iterator[Decl]:
         late = OperatorChain(">=", (now, earliest))
         following = Assign(earliest, OperatorChain("+", (now, number(processor.period))))
         rows = [stmt for slot in processor.slots for stmt in _run(root, slot)]
-        ask = do(ref(root, ada_case(end.instance), f"Ask_{ada_case(end.name)}"), ref("Waiting"))
+        ask: Stmt
+        if isinstance(end, InterruptLine):
+            ask = Assign("Waiting", ref(_accepted(processor)))
+            rows.insert(0, Assign(_accepted(processor), FALSE))
+        else:
+            asked = ref(root, ada_case(end.instance), f"Ask_{ada_case(end.name)}")
+            ask = do(asked, ref("Waiting"))
         run = IfStatement(((ref("Waiting"), (following, *rows)),))
         body.append(IfStatement(((OperatorChain("and then", (due, late)), (ask, run)),)))
+    for processor in woken:
+        if processor.released_by_interrupt is not None:
+            yield Object(_accepted(processor), "Boolean", FALSE)
     times = _integers(len(woken))
     yield Object("Earliest", times, all_else(number(0)))
     yield Subprogram(
@@ -222,6 +236,21 @@ def _start(system: System) -> tuple[Stmt, ...]:
     failed = RaiseStatement(ref("Program_Error"), words)
     start = do(ref(root_package(system), LIFECYCLE, "Start_All"), ref("Started"))
     return start, IfStatement(((Prefix("not", ref("Started")), (failed,)),))
+
+
+def _accepted(processor: Processor) -> str:
+    """Whether an interrupt has been accepted that has not released its processor."""
+    return f"{ada_case(processor.name)}_Accepted"
+
+
+def _interrupted(woken: Sequence[Processor], node: str, name: str) -> tuple[Stmt, ...]:
+    """Accept an interrupt once the separation of its processor is over; () for another name."""
+    for number_, one in enumerate(woken, 1):
+        if one.released_by == InterruptLine(node, name):
+            earliest = Indexed("Earliest", plain(number_))
+            due = OperatorChain(">=", (ref("Ravenchart.Steps.Now"), earliest))
+            return (IfStatement(((due, (Assign(_accepted(one), TRUE),)),)),)
+    return ()
 
 
 def _starts(root: str, woken: Sequence[Processor]) -> tuple[Stmt, ...]:
@@ -249,8 +278,11 @@ def _scalars(of_type: Type) -> list[ScalarType]:
 
 
 def _taken(
-    system: System, root: str, name: str, what: str, of_type: Type | None
+    system: System, root: str, woken: Sequence[Processor], stimulus: Stimulus
 ) -> tuple[Stmt, ...]:
+    name, what, of_type = stimulus
+    if accepted := _interrupted(woken, name, what):
+        return accepted
     instance: Instance = system.instance(name)
     steps: list[Stmt] = []
     value: Expr | None = None

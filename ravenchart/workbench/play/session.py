@@ -19,9 +19,8 @@ from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.observed import ObservedRegion, ObservedStep
 from ravenchart.behaviour.interpreter.region import Stuck, TimeOut
 from ravenchart.behaviour.interpreter.stimuli import (
-    Arrived,
-    Raised,
     Stimuli,
+    Stimulus,
     read_stimuli,
     written_stimuli,
 )
@@ -61,7 +60,7 @@ class PlayedSituation:
     machine: Machine
     at: Ns | None
     """The last release that was executed; None before the first."""
-    entries: tuple[Raised | Arrived, ...] = ()
+    entries: tuple[Stimulus, ...] = ()
     executed: tuple[tuple[Chart, Executed], ...] = ()
     label: str = ""
     records: tuple[StepRecord, ...] = ()
@@ -258,7 +257,7 @@ class Play:
         return found
 
     def _release(
-        self, run: _Executing, due: list[Raised | Arrived] | None = None
+        self, run: _Executing, due: list[Stimulus] | None = None
     ) -> dict[Chart, tuple[ObservedStep, ...]]:
         """Execute the next release; the steps of each chart in it."""
         now, slots = self._following(run)
