@@ -48,6 +48,8 @@ class OpenInvariant:
     """A way from the start to a situation that violates it, where one was found."""
     looked: int
     """How many situations were searched for such a way."""
+    hindrance: str = ""
+    """Why none was searched; "" where that was for want of time."""
 
 
 def invariants_hold(reach: Reachable, system: System) -> Iterator[Diagnostic]:
@@ -77,7 +79,9 @@ def open_invariants(reach: Reachable, system: System) -> Iterator[OpenInvariant]
         except Exhausted:
             yield OpenInvariant(invariant, broken, None, sum(search.looked for search in searches))
             raise
-        yield OpenInvariant(invariant, broken, violation, sum(search.looked for search in searches))
+        looked = sum(search.looked for search in searches)
+        why = next((search.hindrance for search in searches if search.hindrance), "")
+        yield OpenInvariant(invariant, broken, violation, looked, "" if looked else why)
 
 
 # --- Proof ---------------------------------------------------------------------------
@@ -295,6 +299,8 @@ def _not_inductive(one: OpenInvariant) -> Diagnostic:
 
 def search_in_words(one: OpenInvariant) -> str:
     """The search for a way from the start to a situation that violates it."""
+    if one.hindrance:
+        return f"{one.hindrance}, so no way from the start to it was looked for"
     if not one.looked:
         return "there was no time left to look for a way from the start to it"
     return f"no way from the start to it was found among {one.looked} situations"

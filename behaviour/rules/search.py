@@ -108,13 +108,21 @@ class WaySearch:
         self.known: dict[int, tuple[Term, list[Variable]]] = {}
         self.counts: dict[tuple[str, str, int], Term] = {}
 
+    @property
+    def hindrance(self) -> str:
+        """Why it looks at no situation; "" where it does."""
+        for thread in self.threads:
+            if thread.tree.region.steps_per_execution > 1:
+                return f"{thread.name} makes several steps in an execution"
+            row = f"{self.instance}.{thread.name}"
+            if self.system.processor_of(row).released_by is not None:
+                return f"nothing says how often {row} is released"
+        return ""
+
     def violation(self) -> Violation | None:
         """The first violation found."""
-        if any(t.tree.region.steps_per_execution > 1 for t in self.threads):
+        if self.hindrance:
             return None
-        rows = (f"{self.instance}.{thread.name}" for thread in self.threads)
-        if any(self.system.processor_of(row).released_by is not None for row in rows):
-            return None  # nothing bounds when it runs: no schedule is known to be feasible
         seen: set[str] = set()
         waiting = deque([self.start()])
         while waiting:

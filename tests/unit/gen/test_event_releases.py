@@ -20,6 +20,7 @@ from ravenchart.analysis.system.timing import Analysis, analyse
 from ravenchart.behaviour.interpreter.branching import branched
 from ravenchart.behaviour.interpreter.machine import Machine
 from ravenchart.behaviour.interpreter.stimuli import Raised
+from ravenchart.behaviour.rules import findings as of_behaviour
 from ravenchart.building import checking, generation
 from ravenchart.gen.emit.ada.named import ref
 from ravenchart.gen.emit.ada.text import print_unit
@@ -273,6 +274,19 @@ def test_a_row_that_sends_a_message_is_not_released() -> None:
     )
     (told,) = [one.message for one in loaded(change).diagnostics]
     assert told.endswith("its processor sends guard.valve as the message told")
+
+
+def test_an_invariant_that_is_not_proved_is_not_searched_either() -> None:
+    change = (
+        "    regions:\n      Watch:",
+        "    never:\n      calm: in(Watch.Calm) and wanted > 0\n"
+        "      low: in(Watch.Tripped) and level < 100\n    regions:\n      Watch:",
+    )
+    found = loaded(change)
+    assert found.system is not None
+    (told,) = of_behaviour(found.system)
+    assert told.message.startswith("the invariant low is not proved")
+    assert "nothing says how often guard.Watch is released" in str(told.hint)
 
 
 # --- Virtual time
