@@ -20,8 +20,9 @@ HOME = ROOT / "build" / "api"
 
 ADA = {
     "spark_runtime/src": "The run-time support, which every generated program uses.",
-    "spark_runtime/native": "Looks at a running controller on Linux.",
+    "spark_runtime/native": "Looks at a running controller on Linux, and signals as interrupts.",
     "spark_runtime/light": "The one unit of a port to a board that has a body for each board.",
+    "spark_runtime/zynqmp": "Interrupts of the first board.",
     "spark_runtime/zynqmp/gateway": "The second serial line of the first board, for python-can.",
     "spark_runtime/devices": "For programs whose devices can fail at their start.",
     "spark_runtime/simulated": "In place of tasks and clock where a program runs in virtual time.",

@@ -23,6 +23,8 @@ NAMES = (
     house.FLOATS,
     house.VALUES,
     house.LOGICAL,
+    house.EVENTS,
+    house.INTERRUPTS,
     house.BUS,
     house.KERNEL,
     *(record for name, at in PROGRAMS.items() for record in house.record_names(name, at)),

@@ -18,6 +18,8 @@ from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
 from ravenchart.independent.check import checked
 from ravenchart.language_server.completing import proposals
+from ravenchart.language_server.model import model
+from ravenchart.language_server.renaming import renamed
 from ravenchart.paths import ROOT
 from ravenchart.proof.outside_spark import reasons_of
 
@@ -80,6 +82,13 @@ def test_an_editor_proposes_the_interrupts_of_a_node() -> None:
     behind = "released_by: board."
     found = proposals(PATH, str(PATH), TEXT.index(behind) + len(behind), {str(PATH): TEXT})
     assert {"limit", "turn"} <= {one.word for one in found}
+
+
+def test_an_interrupt_is_renamed_where_it_is_declared_and_used() -> None:
+    now = model(PATH, {})
+    symbol = next(one for one in now.symbols.all() if one.name == "limit")
+    assert symbol.declared is not None
+    assert sum(map(len, renamed(now, symbol, "end_stop", {}).values())) == 2
 
 
 def test_only_their_programs_have_a_part_outside_spark() -> None:
