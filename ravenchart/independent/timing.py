@@ -183,6 +183,8 @@ class Timing:
         """From the event that leads to a task until its release, at most."""
         if task.after is not None:
             return self.value(f"{ada(task.after)}_R")
+        if task.port is not None and not task.rows:
+            return 0  # an interrupt waits for no timer
         return self.tick(task.node)[0]
 
     def wcets(self, task: Task) -> dict[int, int]:

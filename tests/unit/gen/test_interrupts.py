@@ -56,9 +56,10 @@ def test_a_target_without_that_unit_takes_none() -> None:
     check_interrupts(without, quiet)
 
 
-def test_the_independent_checker_agrees(tmp_path: Path) -> None:
+@pytest.mark.parametrize("tick", ["", "tick: {period: 100 us, wcet: 2 us}\n    "])
+def test_the_independent_checker_agrees(tick: str, tmp_path: Path) -> None:
     path = tmp_path / "model.yaml"
-    path.write_text(TEXT, encoding="utf-8")
+    path.write_text(TEXT.replace("trace: 2048", f"{tick}trace: 2048"), encoding="utf-8")
     written = generation.write_program(checking.check(path))
     assert checked(path).disagreements == []
     certificate = next(written.folder.glob("*certificate.ads"))
