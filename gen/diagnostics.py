@@ -230,7 +230,6 @@ CODES: Mapping[str, str] = {
     "RV-1208": "A key has no meaning for a command of that kind.",
     "RV-1209": "A provided interface is incomplete, or answers a command in the wrong way.",
     "RV-1210": "A device is not exactly one of a piece of equipment, an array and a facade.",
-    "RV-1211": "An array is made of other things than devices of one kind.",
     "RV-1212": "Two members of a facade provide a command, or the wrong one is chosen.",
     "RV-1213": "The replies of the members of an array cannot be given as one.",
     "RV-1214": "A reply or value from another node has no limit of its time, or a device has one.",

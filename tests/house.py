@@ -80,6 +80,8 @@ RECORDING = ("instance_values.ads", "ravenchart-hosts-value_lines.adb")
 LOGICAL = "runtime-logical"
 """The part of the runtime that controllers need which have logical execution times."""
 LOGICAL_UNITS = ("instance_logical.ads", "ravenchart-logical_times.ads")
+GATHERED = "runtime-gathered"
+"""The part of the runtime that controllers need whose commands go to arrays of tasks."""
 
 EVENTS = "runtime-events"
 """The part of the runtime that controllers need of which events release processors."""
@@ -122,6 +124,7 @@ def targets(names: Sequence[str] = ()) -> Iterator[Target]:
         LOGICAL: partial(_instances, LOGICAL, *LOGICAL_UNITS),
         EVENTS: partial(_instances, EVENTS, *EVENT_UNITS),
         INTERRUPTS: partial(_instances, INTERRUPTS, *INTERRUPT_UNITS),
+        GATHERED: partial(_instances, GATHERED, "instance_gatherings.ads"),
         BUS: _bus,
         KERNEL: _kernel,
     }

@@ -15,7 +15,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import asking, published_by, serving
-from ravenchart.gen.model.commands import Binding, Device, Remote, RemoteRead, Server, wcet_of
+from ravenchart.gen.model.commands import (
+    Binding,
+    Device,
+    Gathered,
+    Remote,
+    RemoteRead,
+    Server,
+    wcet_of,
+)
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.system import Carried, Stop
 
@@ -49,15 +57,17 @@ class CommandTimes:
 def command_times(analysis: Analysis) -> Iterator[CommandTimes]:
     """Every required command, for each row that uses it."""
     for binding in analysis.system.bindings:
+        if isinstance(binding.provider, Gathered):
+            continue  # its elements follow
         for row in asking(analysis.system, binding):
             yield _times(analysis, binding, row)
 
 
 def _times(analysis: Analysis, binding: Binding, row: End) -> CommandTimes:
     need, provider, caller = binding.need, binding.provider, str(row)
+    name = need.command.name
     if isinstance(provider, Device):
-        wcet = wcet_of(provider, need.name)
-        return CommandTimes(caller, need.name, provider.name, "direct", wcet)
+        return CommandTimes(caller, name, provider.name, "direct", wcet_of(binding))
     if isinstance(provider, Remote):
         message = next(m for m in analysis.system.messages if m.name == provider.request)
         served = serving(provider.server)
@@ -65,7 +75,7 @@ def _times(analysis: Analysis, binding: Binding, row: End) -> CommandTimes:
         answered = whole.get(provider.request) if provider.reply else None
         return CommandTimes(
             caller,
-            need.name,
+            name,
             str(served),
             f"over {message.bus}",
             0,
@@ -77,19 +87,23 @@ def _times(analysis: Analysis, binding: Binding, row: End) -> CommandTimes:
     if isinstance(provider, RemoteRead):
         message = next(m for m in analysis.system.messages if m.name == provider.message)
         age = analysis.latency((Carried(provider.message), row)).age
-        name, how, limit = str(message.source), f"over {message.bus}", provider.time_limit
-        return CommandTimes(caller, need.name, name, how, 0, answered=age, limit=limit)
+        source, how, limit = str(message.source), f"over {message.bus}", provider.time_limit
+        return CommandTimes(caller, name, source, how, 0, answered=age, limit=limit)
     if isinstance(provider, Server):
         if published_by(binding) is not None:
-            name = f"{provider.instance}.{published_by(binding)}"
-            return CommandTimes(caller, need.name, name, "copied", 0)
+            item = f"{provider.instance}.{published_by(binding)}"
+            return CommandTimes(caller, name, item, "copied", 0)
         served = serving(provider)
         found = from_release(analysis, (row, served))
-        return CommandTimes(caller, need.name, str(served), "queued", 0, found, waits=True)
+        within = binding.time_limit if need.is_part and need.reply is not None else None
+        answered = None if within is None else found
+        return CommandTimes(
+            caller, name, str(served), "queued", 0, found, answered, within, waits=True
+        )
     fallback = "nothing"
     if need.fallback is not None:
         fallback = f"{binding.instance}.{need.fallback.item}"
-    return CommandTimes(caller, need.name, fallback, "fallback", 0)
+    return CommandTimes(caller, name, fallback, "fallback", 0)
 
 
 def from_release(analysis: Analysis, way: Sequence[Stop]) -> int | None:

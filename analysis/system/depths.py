@@ -138,7 +138,7 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
     for binding in near:
         component = system.instance(binding.instance).component
-        for row in component.senders(binding.need.name):
+        for row in component.senders(binding.need.command.name):
             serves = component.served_by(row.name)
             once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
             within = from_release(analysis, (End(binding.instance, row.name), served))

@@ -83,7 +83,8 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     begin, *others = _stages(chain, system, seen)
     first = [start for start in begin.times if start >= seen.ready]
     last = seen.executions.get(str(chain.way[-1]), 0)
-    origins = first if isinstance(chain.way[0], Carried) else (None, *first)
+    from_release = chain.of_call or isinstance(chain.way[0], Carried)
+    origins = first if from_release else (None, *first)
     found = []
     for origin, start in zip(origins, first, strict=False):
         end = _end(start, others)

@@ -39,7 +39,7 @@ from ravenchart.gen.model.nodes import InterruptLine
 from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for
 from ravenchart.gen.model.samples import hidden_by
 from ravenchart.gen.model.statechart import Region
-from ravenchart.gen.model.system import Carried, Processor, Stop, System
+from ravenchart.gen.model.system import Carried, Chain, Processor, Stop, System
 
 from .transport import Transfer, transfers
 
@@ -150,8 +150,24 @@ class Latencies:
         view_of = replace(found, responses=responses, best=best)
         return cls(system, view, view_of, places, travels)
 
-    def along(self, name: str, way: Sequence[Stop], reaction: int = 0, age: int = 0) -> Latency:
-        """The latency of a way, which lists messages, ports, rows and data."""
+    def of_chain(self, chain: Chain) -> Latency:
+        """The latency of a chain, with its limits."""
+        limits = (chain.reaction or 0, chain.age or 0)
+        return self.along(chain.name, chain.way, *limits, of_call=chain.of_call)
+
+    def along(
+        self,
+        name: str,
+        way: Sequence[Stop],
+        reaction: int = 0,
+        age: int = 0,
+        *,
+        of_call: bool = False,
+    ) -> Latency:
+        """The latency of a way, which lists messages, ports, rows and data.
+
+        ``of_call``: from the release of the row that the way begins with.
+        """
         steps: list[ChainStep] = []
         released = dict(self.network.released_by)
         kept = self._seldom(way[0])  # why a job may leave what comes next as it was
@@ -177,6 +193,8 @@ class Latencies:
             kept = self._kept(place, following) if port is None else self._rarely(place, following)
         if kept:
             steps[-1] = replace(steps[-1], keeps=kept)
+        if of_call:
+            steps[0] = replace(steps[0], hop=HopKind.RELEASED, waits="")
         network = replace(self.network, released_by=released)
         return latency(TimedChain(name, tuple(steps), reaction, age), network, self.found)
 

@@ -21,11 +21,17 @@ from dataclasses import dataclass
 
 from ravenchart.analysis.core.multiframe import Demand
 from ravenchart.analysis.core.responses import Response
-from ravenchart.gen.derive.calls import callers_of, calls_from_afar, delivered, publications
+from ravenchart.gen.derive.calls import (
+    callers_of,
+    calls_from_afar,
+    delivered,
+    element_bindings,
+    publications,
+)
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.chart.steps import RAISED, Steps
 from ravenchart.gen.model.chart.tree import Tree
-from ravenchart.gen.model.commands import Binding, Need, Remote, RemoteRead, Server
+from ravenchart.gen.model.commands import Binding, Gathered, Need, Remote, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, PortKind
 from ravenchart.gen.model.instances import End, Instance, Requests
 from ravenchart.gen.model.statechart import DONE, PseudoKind, Region
@@ -113,7 +119,7 @@ def _reception(system: System, node: str, bus: str) -> Records:
 
 def _watches(row: Region | Activity, binding: Binding) -> bool:
     """Whether a row looks first whether a reply, or published data, is too late."""
-    made, name = binding.provider, binding.need.name
+    made, name = binding.provider, binding.need.command.name
     if isinstance(made, RemoteRead):
         return made.watcher == row.name
     return isinstance(made, Remote) and made.reply is not None and name in row.sends
@@ -240,6 +246,16 @@ class _Counts:
         if binding.provider is None:
             return Records()
         full = Records(1) + self.offered(binding.need.on_full)
+        if isinstance(binding.provider, Gathered):
+            return full + _sum(
+                self._called_at(part) + self.replied(part.need)
+                for part in element_bindings(self.system, binding)
+            )
+        return self._called_at(binding)
+
+    def _called_at(self, binding: Binding) -> Records:
+        """A command of one provider is called."""
+        full = Records(1) + self.offered(binding.need.on_full)
         if isinstance(binding.provider, Server):
             return full
         if isinstance(binding.provider, Remote):
@@ -248,8 +264,10 @@ class _Counts:
 
     def replied(self, need: Need) -> Records:
         """The reply to a command arrives."""
-        component = self.instance.component
-        return self.offered(need.on_reply) if delivered(component, need) else Records()
+        if not delivered(self.instance.component, need):
+            return Records()
+        late = self.offered(need.on_timeout) if need.is_part else Records()
+        return self.offered(need.on_reply) + late
 
     def _recorded(self, name: str) -> Records:
         return Records(0, len(self.system.values_of(self.instance.name, name)))

@@ -220,12 +220,8 @@ class Analysis:
     @cached_property
     def limited(self) -> tuple[tuple[Chain, latencies.Latency], ...]:
         """The chains that the model limits, where there is a way, with their latencies."""
-        found = []
-        for chain in self.system.chains:
-            if chain.way:
-                limits = (chain.reaction or 0, chain.age or 0)
-                found.append((chain, self._latencies.along(chain.name, chain.way, *limits)))
-        return tuple(found)
+        chains = (chain for chain in self.system.chains if chain.way)
+        return tuple((chain, self._latencies.of_chain(chain)) for chain in chains)
 
     @cached_property
     def chains(self) -> tuple[latencies.Latency, ...]:

@@ -12,6 +12,7 @@ from ravenchart.gen.model.commands import (
     Device,
     DeviceType,
     DriverCommand,
+    Gathered,
     Need,
     Provided,
     Remote,
@@ -25,7 +26,7 @@ from ravenchart.gen.model.system import System
 
 def readers(component: Component, need: Need) -> tuple[Region | Activity, ...]:
     """The rows of a component that read a command."""
-    return tuple(row for row in component.runnables() if need.name in row.reads)
+    return tuple(row for row in component.runnables() if need.command.name in row.reads)
 
 
 def publications(system: System, instance: str, row: Region | Activity) -> tuple[Message, ...]:
@@ -46,7 +47,7 @@ def asking(system: System, binding: Binding) -> tuple[End, ...]:
     return tuple(
         End(binding.instance, row.name)
         for row in system.instance(binding.instance).component.runnables()
-        if need.name in (row.reads if need.is_read else row.sends)
+        if need.command.name in (row.reads if need.is_read else row.sends)
     )
 
 
@@ -70,7 +71,7 @@ def callers(system: System, device: Device) -> tuple[End, ...]:
 def called(system: System, device: Device) -> tuple[DriverCommand, ...]:
     """The commands of a device that something is bound to, by itself or in an array."""
     names = {
-        binding.need.name
+        binding.need.command.name
         for binding in system.bindings
         if isinstance(binding.provider, Device)
         and (binding.provider == device or _holds(binding.provider, device))
@@ -102,8 +103,8 @@ def published_by(binding: Binding) -> str | None:
     """The data item of the provider that a read command reads; None where it does not."""
     if not isinstance(binding.provider, Server):
         return None
-    published = binding.provider.interface.published
-    return next((one.item for one in published if one.name == binding.need.name), None)
+    published, name = binding.provider.interface.published, binding.need.command.name
+    return next((one.item for one in published if one.name == name), None)
 
 
 def readers_through(system: System, instance: str, item: str) -> tuple[str, ...]:
@@ -136,7 +137,7 @@ def calls_at_once(system: System, served: Requests) -> int:
     found: dict[str, int] = {}
     for binding in callers_of(system, served.instance, provided):
         component = system.instance(binding.instance).component
-        for row in component.senders(binding.need.name):
+        for row in component.senders(binding.need.command.name):
             times = getattr(row, "steps_per_execution", 1)
             element = f"{binding.instance}.{row.name}"
             found[element] = found.get(element, 0) + times
@@ -154,7 +155,26 @@ def repliers(system: System, binding: Binding) -> tuple[str, ...]:
         return (str(serving(binding.provider)),)
     if isinstance(binding.provider, Remote):
         return receivers(system, binding.provider.reply)
+    if isinstance(binding.provider, Gathered):
+        found = (
+            row for part in element_bindings(system, binding) for row in repliers(system, part)
+        )
+        return tuple(dict.fromkeys(found))
     return rows_of(system, binding) if binding.provider is not None else ()
+
+
+def element_bindings(system: System, binding: Binding) -> tuple[Binding, ...]:
+    """The bindings of the elements where an array provides the command."""
+    names = binding.provider.parts if isinstance(binding.provider, Gathered) else ()
+    return tuple(system.bound[binding.instance, name] for name in names)
+
+
+def gathers(system: System, binding: Binding) -> bool:
+    """Whether the replies of the elements of an array are put together."""
+    called = binding.need.reply is not None and not binding.need.is_read
+    component = system.instance(binding.instance).component
+    reached = any(part.provider is not None for part in element_bindings(system, binding))
+    return reached and called and awaited(component, binding.need)
 
 
 def receivers(system: System, name: str | None) -> tuple[str, ...]:
@@ -186,7 +206,9 @@ def awaited(component: Component, need: Need) -> bool:
 
 
 def delivered(component: Component, need: Need) -> bool:
-    """Whether anybody takes the replies to a call."""
+    """Whether anybody takes the replies to a call; those of elements count for a time-out too."""
+    if need.is_part and need.on_timeout is not None:
+        return True
     return need.on_reply is not None or need.reply_item in replies_read(component)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ravenchart.gen.model.commands import Device, Remote, RemoteRead, Server
+from ravenchart.gen.model.commands import Device, Gathered, Remote, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Component
 from ravenchart.gen.model.protocols import Protocol
 from ravenchart.gen.model.statechart import Region
@@ -44,9 +44,9 @@ def clients(system: System) -> tuple[Client, ...]:
     calls: dict[tuple[str, str], tuple[Protocol, list[str]]] = {}
     for one in system.bindings:
         for name, protocol in _protocols(one.provider):
-            if one.need.name in protocol.commands:
+            if one.need.command.name in protocol.commands:
                 known = calls.setdefault((one.instance, name), (protocol, []))
-                known[1].append(one.need.name)
+                known[1].append(one.need.command.name)
     alike: dict[tuple[str, Protocol, tuple[str, ...]], list[tuple[str, str]]] = {}
     for (instance, provider), (protocol, commands) in calls.items():
         key = system.instance(instance).component.name, protocol, tuple(commands)
@@ -64,7 +64,7 @@ def clients(system: System) -> tuple[Client, ...]:
 
 
 def _protocols(
-    provider: Device | Server | Remote | RemoteRead | None,
+    provider: Device | Server | Remote | RemoteRead | Gathered | None,
 ) -> Iterator[tuple[str, Protocol]]:
     """Each provider that a call reaches, by a name, with its protocol: of an array each device."""
     if isinstance(provider, Device):

@@ -40,7 +40,7 @@ from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Carried, Chain, System
 from ravenchart.gen.origins import Origin
 
-from .calls import awaited, published_by, readers, serving
+from .calls import asking, awaited, published_by, readers, serving
 from .distribution import bus_named, carriers, which_bus
 from .identifiers import OPEN
 
@@ -65,9 +65,32 @@ def calling(system: System) -> System:
         system,
         types=(*system.types, *dict.fromkeys(t for call in calls for t in call.types)),
         messages=(*system.messages, *(m for call in calls for m in call.messages)),
-        chains=(*system.chains, *(chain for call in calls for chain in call.chains)),
+        chains=(
+            *system.chains,
+            *(chain for call in calls for chain in call.chains),
+            *_within_node(system),
+        ),
         bindings=tuple(_bound(system, b, providers) for b in system.bindings),
     )
+
+
+def _within_node(system: System) -> Iterator[Chain]:
+    """The chains of calls to elements of arrays on the node of their caller, within the limit.
+
+    Of each row that calls there is one: from its release until the element has executed the call.
+    """
+    for binding in system.bindings:
+        need, server, limit = binding.need, binding.provider, binding.time_limit
+        component = system.instance(binding.instance).component
+        queued = isinstance(server, Server) and published_by(binding) is None
+        waits = need.is_part and limit is not None and awaited(component, need)
+        if not isinstance(server, Server) or not queued or not waits or is_across(system, binding):
+            continue
+        rows = asking(system, binding)
+        for row in rows:
+            name = _called(binding) if len(rows) == 1 else f"{_called(binding)}_{row.name}"
+            path = (row, serving(server))
+            yield Chain(name, binding.origin, path, reaction=limit, age=None, of_call=True)
 
 
 def is_across(system: System, binding: Binding) -> bool:
@@ -141,7 +164,7 @@ def _bound(
     if carried is not None:
         return replace(binding, provider=carried)
     component, need = system.instance(binding.instance).component, binding.need
-    idle = not component.senders(need.name) and not readers(component, need)
+    idle = not component.senders(need.command.name) and not readers(component, need)
     return replace(binding, provider=None) if idle and is_across(system, binding) else binding
 
 
@@ -160,7 +183,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
     """The messages of a binding's command; None where no message can carry it, or no row calls."""
     need, server = binding.need, binding.provider
     component = system.instance(binding.instance).component
-    period = component.send_period(need.name)
+    period = component.send_period(need.command.name)
     if not isinstance(server, Server) or period is None or obstacle(system, binding):
         return None
     call, reply, asked, answered = _names(binding)
@@ -184,7 +207,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
         type=_numbered(asked, binding.origin, need.argument),
         signals=(),
         length=0,
-        source=End(binding.instance, need.name),
+        source=End(binding.instance, need.command.name),
         targets=(End(server.instance, server.interface.name),),
         period=period,
         call=remote,
@@ -198,7 +221,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
         name=reply,
         type=_numbered(answered, binding.origin, need.reply),
         source=End(server.instance, reply),
-        targets=(End(binding.instance, f"{need.name}_Reply"),),
+        targets=(End(binding.instance, f"{need.command.name}_Reply"),),
         period=named(server_component.activities, str(server.interface.server)).timing.period,
     )
     path = (Carried(call), serving(server), Carried(reply))
@@ -210,7 +233,7 @@ def _call(system: System, binding: Binding) -> _Call | None:
 def _published_as(binding: Binding) -> str:
     """The message that carries a published data item, on the bus that the binding names."""
     assert isinstance(binding.provider, Server)
-    own = f"{path_name(binding.provider.instance)}_{binding.need.name}"
+    own = f"{path_name(binding.provider.instance)}_{binding.need.command.name}"
     return own if binding.bus is None else f"{own}_{binding.bus}"
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus
-from ravenchart.gen.model.commands import Remote, RemoteRead
+from ravenchart.gen.model.commands import Binding, Remote, RemoteRead
 from ravenchart.gen.model.component import Activity
 from ravenchart.gen.model.instances import End, Instance
 from ravenchart.gen.model.nodes import PROBE, SUPERVISOR
@@ -22,6 +22,8 @@ from .calls import (
     callers,
     callers_of,
     calls_from_afar,
+    element_bindings,
+    gathers,
     readers_through,
     receivers,
     repliers,
@@ -124,6 +126,10 @@ class _Sharing:
                 rows = [*rows_of(self.system, binding), *receivers(self.system, remote.reply)]
                 users = [self.system.processor_of(row).name for row in rows]
                 yield self.made(f"{instance.name}.{binding.need.name}.call", users)
+            if binding.instance == instance.name and gathers(self.system, binding):
+                rows = [*rows_of(self.system, binding), *repliers(self.system, binding)]
+                users = [self.system.processor_of(row).name for row in rows]
+                yield self.made(f"{instance.name}.{binding.need.name}.gathering", users)
             if binding.instance == instance.name and isinstance(remote, RemoteRead):
                 rows = [*rows_of(self.system, binding), *receivers(self.system, remote.message)]
                 users = [self.system.processor_of(row).name for row in rows]
@@ -189,15 +195,8 @@ class _Sharing:
                     yield from self.raisers_once(instance, item)
         for need in component.needs:
             binding = self.system.bound[instance.name, need.name]
-            is_remote = isinstance(binding.provider, Remote)
-            if need.on_full in named or (is_remote and need.on_timeout in named):
-                rows = rows_of(self.system, binding)
-                yield from (self.system.processor_of(row).name for row in rows)
-            if isinstance(binding.provider, RemoteRead) and need.on_timeout in named:
-                yield self.runs(instance.name, binding.provider.watcher)
-            if need.on_reply in named:
-                rows = repliers(self.system, binding)
-                yield from (self.system.processor_of(row).name for row in rows)
+            for one in element_bindings(self.system, binding) or (binding,):
+                yield from self.raisers_of_call(one, named)
         for port in component.inputs():
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
                 yield self.runs(instance.name, "ports")
@@ -231,6 +230,22 @@ class _Sharing:
         """The task that supervises a processor, if one does."""
         element = f"{processor.node}.{SUPERVISOR}"
         return element if element in self.priorities else None
+
+    def raisers_of_call(self, binding: Binding, named: Set[str | None]) -> Iterable[str]:
+        """The processors that raise an event of a required command.
+
+        Whoever delivers the last reply of an array raises an event also where another is late.
+        """
+        need, provider = binding.need, binding.provider
+        is_remote = isinstance(provider, Remote)
+        if need.on_full in named or (is_remote and need.on_timeout in named):
+            rows = rows_of(self.system, binding)
+            yield from (self.system.processor_of(row).name for row in rows)
+        if isinstance(provider, RemoteRead) and need.on_timeout in named:
+            yield self.runs(binding.instance, provider.watcher)
+        if need.on_reply in named or (need.is_part and need.on_timeout in named):
+            rows = repliers(self.system, binding)
+            yield from (self.system.processor_of(row).name for row in rows)
 
     def raisers_once(self, instance: Instance, region: Region) -> Iterable[str]:
         """As `raisers`, without following overflows further."""

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from ravenchart.gen.model.commands import Server
+from ravenchart.gen.model.commands import Binding, RemoteRead, Server
 from ravenchart.gen.model.instances import End, Events
 from ravenchart.gen.model.raising import raises_for
 from ravenchart.gen.model.statechart import OnEvent
@@ -42,15 +42,8 @@ def flow_of(system: System) -> Flow:
                     flow[End(instance.name, name)].append(own)
             flow[own] += [End(instance.name, name) for name in (*row.writes, *row.sends)]
     for binding in system.bindings:
-        provider, need = binding.provider, binding.need
-        if isinstance(provider, Server):
-            item = published_by(binding)
-            if item is not None:
-                flow[End(provider.instance, item)] += asking(system, binding)
-            elif provider.interface.server is not None:
-                flow[End(binding.instance, need.name)].append(serving(provider))
-        elif provider is None and need.fallback is not None:
-            flow[End(binding.instance, need.fallback.item)] += asking(system, binding)
+        for before, after in _through(system, binding):
+            flow[before].append(after)
     joined = [(one.source, one.target) for one in system.connections]
     for source, target in (*joined, *_by_events(system)):
         flow[source].append(target)
@@ -76,6 +69,25 @@ def _by_events(system: System) -> Iterator[tuple[End, End]]:
             place = End(taken.instance, one.name)
             if place != region and raises_for(system, place, region):
                 yield place, region
+
+
+def _through(system: System, binding: Binding) -> Iterator[tuple[Stop, Stop]]:
+    """Where values go through a binding: calls, published data, fallbacks."""
+    provider, need = binding.provider, binding.need
+    source: Stop | None = None
+    if isinstance(provider, Server):
+        item = published_by(binding)
+        if item is not None:
+            source = End(provider.instance, item)
+        elif provider.interface.server is not None:
+            yield End(binding.instance, need.command.name), serving(provider)
+    elif isinstance(provider, RemoteRead) and need.is_part:
+        source = End(binding.instance, need.name)
+    elif provider is None and need.fallback is not None:
+        source = End(binding.instance, need.fallback.item)
+    if source is not None:
+        for row in asking(system, binding):
+            yield source, row
 
 
 def _event_over(

@@ -67,6 +67,9 @@ def provided_port(name: str) -> str:
 def end_port(system: System, message: Message, end: End) -> str:
     """Where a message begins or ends at an instance: a port, or the interface of a command."""
     component = system.instance(end.instance).component
+    read = system.bound.get((end.instance, end.name))
+    if read is not None:
+        return required_port(read.need.interface)
     for need in component.needs:
         if end.name in (need.name, need.reply_item):
             return required_port(need.interface)

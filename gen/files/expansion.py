@@ -23,10 +23,22 @@ from .located import Map, Seq
 from .schema import ModelFile
 
 LISTED = (
-    *("activities", "on_deadline_miss", "on_overrun", "on_silence", "facade", "raises", "to"),
+    *(
+        "activities",
+        "on_deadline_miss",
+        "on_overrun",
+        "on_silence",
+        "array",
+        "facade",
+        "raises",
+        "to",
+    ),
     *("on_error_passive", "on_bus_off", "on_recovered", "on", "on_error"),
 )
 """The keys of lists, outside of components, whose items may have stars."""
+
+PROVIDERS = ("array", "facade")
+"""Those whose items may also name numbered interfaces and devices."""
 
 SINGLE = ("released_by", "from")
 """The keys of messages and processors that name one thing."""
@@ -165,17 +177,44 @@ def _joins(given: Seq, level: InstanceLevel, names: ArrayNames, numbered: tuple[
     """Connections or bindings, one for each element."""
     made = ListCopy(given)
     for number, form in enumerate(given):
-        if not isinstance(form, Map):
-            continue
-        texts = {key: str(form[key]) for key in ("from", "to")}
-        places = {key: form.values_at[key].origin for key in texts}
-        ends = {key: names.names(texts[key], places[key], level, numbered) for key in texts}
-        size = names.size((texts[key], places[key], end) for key, end in ends.items())
-        if size is None:
-            made.lose(number)
-        elif any(end is not None and end.has_star for end in ends.values()):
-            made.put(number, [_with(form, ends, element) for element in range(size)])
+        if isinstance(form, Map):
+            found = _join(form, level, names, numbered)
+            if found is None:
+                made.lose(number)
+            elif found != [form]:
+                made.put(number, list(found))
     return made.sequence()
+
+
+def _join(
+    form: Map, level: InstanceLevel, names: ArrayNames, numbered: tuple[str, ...]
+) -> list[Map] | None:
+    """The connections or bindings that one stands for; None where that cannot be known.
+
+    An array that one interface of the model is bound to stays together, as a list.
+    """
+    whole, keys = form, ["from", "to"]
+    if isinstance(listed := form["to"], Seq):
+        copied = TreeCopy(form)
+        copied.put("to", _items(listed, names, numbered))
+        whole, keys = copied.tree, ["from"]
+    texts = {key: str(form[key]) for key in keys}
+    places = {key: form.values_at[key].origin for key in keys}
+    ends = {key: names.names(texts[key], places[key], level, numbered) for key in keys}
+    size = names.size((texts[key], places[key], end) for key, end in ends.items())
+    if size is None:
+        return None
+    first, last = ends["from"], ends.get("to")
+    gathers = numbered is JOINED["bindings"] and level is names.top
+    if gathers and last and last.has_star and not last.fits and first and not first.has_star:
+        items, made = Seq(places["to"]), TreeCopy(form)
+        items += last.names
+        items.items_at += [form.values_at["to"]] * len(items)
+        made.put("to", items)
+        return [made.tree]
+    if any(end is not None and end.has_star for end in ends.values()):
+        return [_with(whole, ends, element) for element in range(size)]
+    return [whole]
 
 
 def _with(form: Map, ends: dict[str, StarNames | None], number: int) -> Map:
@@ -226,7 +265,8 @@ def _lists(given: Map, names: ArrayNames) -> Map:
     made = TreeCopy(given)
     for key, value in given.items():
         if key in LISTED and isinstance(value, Seq):
-            made.put(key, _items(value, names))
+            numbered = JOINED["bindings"] if key in PROVIDERS else ()
+            made.put(key, _items(value, names, numbered))
         elif key == "phases" and isinstance(value, Map):
             made.put(key, _keys(value, names))
         elif isinstance(value, Map) and key != "signals":
@@ -256,13 +296,13 @@ def _keys(given: Map, names: ArrayNames) -> Map:
     return made.tree
 
 
-def _items(given: Seq, names: ArrayNames) -> Seq:
+def _items(given: Seq, names: ArrayNames, numbered: tuple[str, ...] = ()) -> Seq:
     """A list of references, with an item for each element."""
     made = ListCopy(given)
     for number, text in enumerate(given):
         if not isinstance(text, str):
             continue
-        found = names.names(text, given.items_at[number].origin, names.top)
+        found = names.names(text, given.items_at[number].origin, names.top, numbered)
         if found is None:
             made.lose(number)
         elif found.has_star:

@@ -172,8 +172,10 @@ class DeviceForm(Element):
         lt=2**64,
     )
     parameters: dict[Reference, Constant] | None = optional("Values of the type's parameters.")
-    array: list[Reference] | None = optional(
-        "Devices of one kind as one: a command goes to all, and axes are counted on.", min_length=2
+    array: list[StarredPath] | None = optional(
+        "Devices, or `instance.interface`s, as one: a command goes to all, and axes are counted "
+        "on.",
+        min_length=1,
     )
     facade: list[StarredPath] | None = optional(
         "Devices, or `instance.interface`s, of several kinds as one: a command goes to the one "
@@ -189,16 +191,23 @@ class AnyBindingForm(Element):
     """A required interface, and what provides it."""
 
     from_: StarredReference = key("`instance.interface`, a required one.", alias="from")
-    to: str = key("A device, or `instance.interface`, a provided one.")
     time_limit: PositiveSpan | None = optional(
         "Longest time from the caller's release until a reply from another node has arrived, "
-        "and age of what is read there; needed for these, without effect inside a node."
+        "and age of what is read there; needed for these. Inside a node it has an effect for "
+        "elements of arrays only."
     )
 
 
 class BindingForm(AnyBindingForm):
     """A required interface of an instance, and what provides it."""
 
+    to: Annotated[
+        Annotated[str, Tag("<one>")] | Annotated[list[StarredPath], Tag("<list>")],
+        shaped("a device or `instance.interface`, or a list of these"),
+    ] = key(
+        "A device, or `instance.interface`, a provided one; several, or those of an array, work "
+        "as one, as in `array` of a device."
+    )
     bus: Reference | None = optional(
         "The bus that carries its commands, replies and events between nodes, where the model has "
         "several; without effect inside a node."

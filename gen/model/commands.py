@@ -85,7 +85,12 @@ class Need:
     @property
     def reply_item(self) -> str | None:
         """The data item that holds the last reply to a call."""
-        return None if self.is_read or self.reply is None else f"{self.name}_Reply"
+        return None if self.is_read or self.reply is None else f"{self.command.name}_Reply"
+
+    @property
+    def is_part(self) -> bool:
+        """Whether it is for one element of an array; rows and providers use the command's name."""
+        return self.name != self.command.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -344,19 +349,29 @@ class RemoteRead:
 
 
 @dataclass(frozen=True, slots=True)
+class Gathered:
+    """An array whose elements are called one by one: each has a binding of its own."""
+
+    name: str
+    parts: tuple[str, ...]
+    """The needs of the elements, in the order of the array."""
+
+
+@dataclass(frozen=True, slots=True)
 class Binding:
     """The provider of a required command of an instance; None: the fallback."""
 
     instance: str
     origin: Origin
     need: Need
-    provider: Device | Server | Remote | RemoteRead | None
+    provider: Device | Server | Remote | RemoteRead | Gathered | None
     time_limit: Ns | None = None
     """Of a reply from another node, and of the age of what is read there."""
     bus: str | None = None
     """The bus between nodes that the model names for it, of several."""
 
 
-def wcet_of(provider: Device | Server | Remote | RemoteRead | None, command: str) -> Ns:
+def wcet_of(binding: Binding) -> Ns:
     """The time that a call adds to its caller's WCET; only a driver's work is counted apart."""
-    return provider.command(command).wcet if isinstance(provider, Device) else Ns(0)
+    provider, name = binding.provider, binding.need.command.name
+    return provider.command(name).wcet if isinstance(provider, Device) else Ns(0)

@@ -255,6 +255,8 @@ class Chain:
     """From the sampling of an input until the output made of it."""
     way: tuple[Stop, ...] = ()
     gap: Gap | None = None
+    of_call: bool = False
+    """It counts from the release of its first row, which makes a call, whatever that waits for."""
 
 
 @dataclass(frozen=True, slots=True)

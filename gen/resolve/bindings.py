@@ -10,18 +10,20 @@ no binding needs is left out, with its row and its data.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from ravenchart.gen.derive.calls import awaited
 from ravenchart.gen.derive.completion import table_period
 from ravenchart.gen.files.schema_devices import AnyBindingForm, BindingForm
-from ravenchart.gen.language.names import Findings, meant
+from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.quantities import LONGEST
-from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.model.commands import (
     Binding,
     Device,
     DriverCommand,
+    Gathered,
     Need,
     Poll,
     Server,
@@ -33,10 +35,13 @@ from ravenchart.gen.model.statechart import Region
 from ravenchart.gen.model.system import Processor, Slot, System
 
 from .devices import (
+    Array,
     Devices,
     Provider,
+    Report,
     found_in,
     has_tasks,
+    lacking,
     offered,
     provided_axes,
     provider_name,
@@ -44,6 +49,7 @@ from .devices import (
     told_by,
     ungathered,
 )
+from .interfaces import at_axes
 from .paths import DeploymentNames, outermost, owner_at, reached, split
 from .placing import bus_between
 
@@ -72,7 +78,7 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices, site: Deploym
         if pair is None:
             continue
         owner = owner_at(pair[0], at, devices.owners, findings)
-        provider = devices.provider(form.to, form.at("to"))
+        provider = devices.bound_to(form)
         bus = bus_between(form, site)
         if owner is None or not reached(owner, at, "interface", findings):
             continue
@@ -95,7 +101,11 @@ def given_bindings(forms: Iterable[BindingForm], devices: Devices, site: Deploym
 
 
 def bindings_of(
-    instances: Iterable[Instance], given: Given, known: Sequence[str], findings: Findings
+    instances: Iterable[Instance],
+    given: Given,
+    known: Sequence[str],
+    types: NameScope[Type],
+    findings: Findings,
 ) -> tuple[Binding, ...]:
     """The binding of each command that an instance requires."""
     made: list[Binding] = []
@@ -115,7 +125,8 @@ def bindings_of(
             if key in given:
                 one = given[key]
                 if one.provider is not None:
-                    made.append(_bound(instance, need, one, one.provider, uneven, findings))
+                    found = _provider_of(instance, need, one, one.provider, uneven, findings)
+                    made += _bound(instance, need, one, found, types)
             elif need.optional:
                 made.append(Binding(instance.name, need.origin, need, None))
             elif need.interface not in unbound:
@@ -206,46 +217,112 @@ def _check_type(
         findings.error("RV-1205", form.at("to"), message, hint="change `axes` of one of them")
 
 
-def _bound(
+def _provider_of(
     instance: Instance,
     need: Need,
     given: GivenBinding,
     provider: Provider,
     uneven: set[tuple[str, str]],
     findings: Findings,
-) -> Binding:
-    """The binding of one command; an error where it has neither provider nor fallback.
+) -> Device | Server | Array | None:
+    """The provider of one command; an error where it has neither provider nor fallback.
 
     ``uneven`` has the interfaces and providers whose different axes were reported.
     """
-    form = given.form
-    at, notes = form.at("to"), [(need.origin, f"{need.name} is required here")]
+    at, notes = given.form.at("to"), [(need.origin, f"{need.name} is required here")]
 
     def report(code: str, message: str, hint: str | None) -> None:
         findings.error(code, at, message, notes=notes, hint=hint)
 
     found = found_in(provider, need.name, report)
     own = provider_name(provider)
+    array = ungathered(provider, need.name)
+    if isinstance(found, Array) and need.reply is not None and not need.command.per_axis:
+        found, array = None, found
     if found is None and not need.optional:
-        array = ungathered(provider, need.name)
         if array is not None:
             message = f"{array.name} cannot give {need.name} as one: its reply is not per axis"
-            report("RV-1213", message, "bind to one of its members, or join them by `facade`")
+            hint = "bind to one of its members, or join them by `facade`"
+            if isinstance(array, Array):
+                hint = f"declare {need.name} with `per_axis: true`, or bind to one of its elements"
+            report("RV-1213", message, hint)
+        elif without := lacking(provider, need.name):
+            message = f"{without[0]}, an element of {own}, does not provide {need.name}"
+            hint = f"provide it there, or take {without[0]} out of the array"
+            report("RV-1204", message, hint)
         else:
             message = f"{own} does not provide {need.name}, which {instance.name} requires"
             near = meant(need.name, offered(provider))
             hint = near or "provide it, or name a fallback: `else: ...`"
             report("RV-1204", message, hint)
     if found is not None and need.command.per_axis:
-        axes = provided_axes(found, need.name)
+        axes = provided_axes(found)
         name, user = provider_name(found), f"{instance.name}.{need.interface}"
         if axes != need.axes and (need.interface, name) not in uneven:
             uneven.add((need.interface, name))
             message = f"{name} has {_axes(axes)}, but {user} works on {need.axes}"
-            report("RV-1205", message, "join devices by `array`, or change `axes`")
+            hint = "join devices by `array`, or change `axes`"
+            if isinstance(found, Array):
+                hint = "let the array have an element for each axis, or change `axes`"
+            report("RV-1205", message, hint)
+    if isinstance(found, Array):
+        _check_parts(instance, need, found, report)
+    return found
+
+
+def _check_parts(instance: Instance, need: Need, array: Array, report: Report) -> None:
+    """The calls of the elements have names of their own, and replies of one type."""
+    component = instance.component
+    known = {port.name.lower() for port in component.ports}
+    known |= {item.name.lower() for item in component.data}
+    clash = next((name for name in _parts_of(need, array) if name.lower() in known), None)
+    if clash is not None:
+        message = f"`{clash}`, a call of one element of {array.name}, is a name of {component.name}"
+        report("RV-0303", message, "rename it there")
+    axes = sorted({provided_axes(part) for part in array.members})
+    waits = not need.is_read and need.reply is not None and awaited(component, need)
+    if waits and len(axes) > 1:
+        message = (
+            f"{array.name} cannot give the reply of {need.name} as one: it has elements with "
+            f"{_axes(axes[0])} and elements with {_axes(axes[-1])}"
+        )
+        report("RV-1213", message, "join elements with the same number of axes")
+
+
+def _parts_of(need: Need, array: Array) -> tuple[str, ...]:
+    """The names of a command for each element of an array."""
+    return tuple(f"{need.name}_{number}" for number in range(1, len(array.members) + 1))
+
+
+def _bound(
+    instance: Instance,
+    need: Need,
+    given: GivenBinding,
+    found: Device | Server | Array | None,
+    types: NameScope[Type],
+) -> Iterator[Binding]:
+    """The binding of one command; where an array provides it, those of its elements follow."""
+    form = given.form
     limit = LONGEST if form.lost("time_limit") else form.time_limit
-    limit = None if limit is None else Ns(limit)
-    return Binding(instance.name, form.origin, need, found, limit, given.bus)
+    made = Binding(
+        instance.name,
+        form.origin,
+        need,
+        None if isinstance(found, Array) else found,
+        None if limit is None else Ns(limit),
+        given.bus,
+    )
+    if not isinstance(found, Array):
+        yield made
+        return
+    names = _parts_of(need, found)
+    yield replace(made, provider=Gathered(found.name, names))
+    for name, part in zip(names, found.members, strict=True):
+        assert isinstance(part, Device | Server)
+        axes = provided_axes(part)
+        argument, reply = at_axes(need.command, axes, types)
+        own = replace(need, name=name, axes=axes, argument=argument, reply=reply, fallback=None)
+        yield replace(made, need=own, provider=part)
 
 
 def _axes(count: int) -> str:
@@ -330,9 +407,9 @@ def _times_of_calls(component: Component, bindings: Sequence[Binding]) -> dict[s
         steps = row.steps_per_execution if isinstance(row, Region) else times
         found[row.name] = Ns(
             sum(
-                wcet_of(b.provider, b.need.name) * (times if b.need.is_read else steps)
+                wcet_of(b) * (times if b.need.is_read else steps)
                 for b in bindings
-                if b.need.name in (row.reads if b.need.is_read else row.sends)
+                if b.need.command.name in (row.reads if b.need.is_read else row.sends)
             )
         )
     return found

@@ -8,10 +8,10 @@ An array and a facade are decided here: their callers call the pieces.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
-from ravenchart.gen.files.schema_devices import DeviceForm, DeviceTypeForm
+from ravenchart.gen.files.schema_devices import BindingForm, DeviceForm, DeviceTypeForm
 from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.terms import Ns, Type
 from ravenchart.gen.model.commands import (
@@ -39,6 +39,9 @@ from .interfaces import at_axes
 from .paths import Owners, Placed, owner_at, reached, split
 from .protocols import protocol_of
 
+SHOWN = 3
+"""The elements of an array without a name that a message lists."""
+
 
 @dataclass(frozen=True, slots=True)
 class Facade:
@@ -49,7 +52,15 @@ class Facade:
     chosen: tuple[tuple[str, Provider], ...]
 
 
-Provider = Device | Server | Facade
+@dataclass(frozen=True, slots=True)
+class Array:
+    """Providers as one, each with its part of the axes: tasks, or devices of several kinds."""
+
+    name: str
+    members: tuple[Provider, ...]
+
+
+Provider = Device | Server | Facade | Array
 
 
 def provider_name(provider: Provider) -> str:
@@ -66,6 +77,9 @@ def offered(provider: Provider) -> tuple[str, ...]:
     if isinstance(provider, Server):
         own = provider.interface
         return (*(one.name for one in own.requests), *(one.name for one in own.published))
+    if isinstance(provider, Array):
+        first, *others = (offered(one) for one in provider.members)
+        return tuple(name for name in first if all(name in names for names in others))
     return tuple(dict.fromkeys(name for one in provider.members for name in offered(one)))
 
 
@@ -235,7 +249,12 @@ class Devices:
 
     def _members(self, form: DeviceForm, key: str) -> list[Provider] | None:
         """The members of an array or facade; None where one is wrong."""
-        texts = (form.array if key == "array" else form.facade) or []
+        return self._each((form.array if key == "array" else form.facade) or [], form, key)
+
+    def _each(
+        self, texts: Sequence[str], form: DeviceForm | BindingForm, key: str
+    ) -> list[Provider] | None:
+        """The providers that a list names, each once; None where one is wrong."""
         found: list[Provider] = []
         for index, text in enumerate(texts):
             at = form.item_at(key, index)
@@ -249,35 +268,41 @@ class Devices:
         whole = len(found) == len(texts) and not form.list_damaged(key)
         return found if whole else None
 
-    def _array(self, name: str, form: DeviceForm, members: list[Provider]) -> Device | None:
-        """Devices of one kind as one: per axis commands are joined, others go to all."""
-        pieces: list[Device] = []
+    def bound_to(self, form: BindingForm) -> Provider | None:
+        """The provider that a binding names, or several as one."""
+        if isinstance(form.to, str):
+            return self.provider(form.to, form.at("to"))
+        members = self._each(form.to, form, "to")
+        if members is None:
+            return None
+        self._pieces_apart(members, form, "to")
+        names = form.to if len(form.to) <= SHOWN else [form.to[0], "...", form.to[-1]]
+        return Array(f"[{', '.join(names)}]", tuple(members))
+
+    def _pieces_apart(
+        self, members: Sequence[Provider], form: DeviceForm | BindingForm, key: str
+    ) -> None:
+        """Report what is in two members of an array."""
         places: dict[str, str] = {}
         for index, member in enumerate(members):
-            at = form.item_at("array", index)
-            for leaf in member.leaves() if isinstance(member, Device) else ():
-                first = places.setdefault(leaf.name, provider_name(member))
+            at = form.item_at(key, index)
+            for piece in pieces_of(member):
+                first = places.setdefault(piece, provider_name(member))
                 if first != provider_name(member):
                     where = f"in {first}, {provider_name(member)}"
-                    message = f"{leaf.name} appears twice in `array`: {where}"
+                    message = f"{piece} appears twice in `{key}`: {where}"
                     hint = "a piece of equipment has its axes once: remove one of them"
                     self.findings.error("RV-1210", at, message, hint=hint)
-            if not isinstance(member, Device):
-                what = "a facade" if isinstance(member, Facade) else "a task's interface"
-                message = f"{provider_name(member)} is {what}; the members of an array are devices"
-                hint = "join devices of one kind by `array`, and what differs by `facade`"
-                self.findings.error("RV-1211", at, message, hint=hint)
-            elif pieces and _kind(member) is not _kind(pieces[0]):
-                message = (
-                    f"{member.name} is of the type {_kind(member).name}, but {pieces[0].name} of "
-                    f"{_kind(pieces[0]).name}"
-                )
-                hint = "an array has one kind of device; join several kinds by `facade`"
-                self.findings.error("RV-1211", at, message, hint=hint)
-            else:
-                pieces.append(member)
-        if len(pieces) < len(members):
-            return None
+
+    def _array(self, name: str, form: DeviceForm, members: list[Provider]) -> Provider | None:
+        """Providers as one: per axis commands are joined, others go to all.
+
+        Devices of one kind are a device again.
+        """
+        self._pieces_apart(members, form, "array")
+        pieces = [member for member in members if isinstance(member, Device)]
+        if len(pieces) < len(members) or any(_kind(p) is not _kind(pieces[0]) for p in pieces):
+            return Array(name, tuple(members))
         axes = sum(piece.axes for piece in pieces)
         joined = [
             DriverCommand(
@@ -311,6 +336,15 @@ class Devices:
         return None if wrong else Facade(name, tuple(members), tuple(chosen))
 
 
+def pieces_of(provider: Provider) -> tuple[str, ...]:
+    """The names of the devices and interfaces in it."""
+    if isinstance(provider, Device):
+        return tuple(leaf.name for leaf in provider.leaves())
+    if isinstance(provider, Server):
+        return (provider_name(provider),)
+    return tuple(name for member in provider.members for name in pieces_of(member))
+
+
 def _kind(device: Device) -> DeviceType:
     """The type of the pieces of a device."""
     kind = device.leaves()[0].type
@@ -322,8 +356,19 @@ Report = Callable[[str, str, str | None], None]
 """Takes code, message and hint of what is wrong with a binding."""
 
 
-def found_in(provider: Provider, command: str, report: Report) -> Device | Server | None:
-    """The part of a provider that has a command; None when no part has, or it was reported."""
+def found_in(provider: Provider, command: str, report: Report) -> Device | Server | Array | None:
+    """The part of a provider that has a command; None when no part has, or it was reported.
+
+    Of an array, all of its members have it.
+    """
+    if isinstance(provider, Array):
+        parts: list[Provider] = []
+        for member in provider.members:
+            part = found_in(member, command, report)
+            if part is None:
+                return None
+            parts += part.members if isinstance(part, Array) else (part,)
+        return Array(provider.name, tuple(parts))
     if not isinstance(provider, Facade):
         return provider if command in offered(provider) else None
     meant_by = dict(provider.chosen).get(command.lower())
@@ -350,6 +395,8 @@ def tells(provider: Provider, event: str) -> tuple[Teller, ...]:
         return tuple(
             (provider, one) for one in provider.provides if one.is_event and one.name == event
         )
+    if isinstance(provider, Array):
+        return ()
     meant_by = dict(provider.chosen).get(event.lower())
     members = provider.members if meant_by is None else (meant_by,)
     return tuple(one for member in members for one in tells(member, event))
@@ -367,7 +414,7 @@ def told_by(provider: Provider) -> tuple[str, ...]:
 
 def ungathered(provider: Provider, command: str) -> Device | None:
     """The array in a provider whose pieces have a command that they cannot give as one."""
-    if isinstance(provider, Facade):
+    if isinstance(provider, Facade | Array):
         arrays: Iterable[Device | None] = (ungathered(one, command) for one in provider.members)
         return next((one for one in arrays if one is not None), None)
     if not isinstance(provider, Device) or provider.type is not None:
@@ -375,14 +422,25 @@ def ungathered(provider: Provider, command: str) -> Device | None:
     return provider if command in (one.name for one in _kind(provider).provides) else None
 
 
-def provided_axes(provider: Device | Server, command: str) -> int:
+def lacking(provider: Provider, command: str) -> tuple[str, ...]:
+    """The members of an array in it that do not have a command that others have."""
+    if isinstance(provider, Facade):
+        return tuple(name for one in provider.members for name in lacking(one, command))
+    members = provider.members if isinstance(provider, Array) else ()
+    without = tuple(provider_name(one) for one in members if command not in offered(one))
+    return without if len(without) < len(members) else ()
+
+
+def provided_axes(provider: Provider) -> int:
     """The number of axes that a provider has."""
+    if isinstance(provider, Facade | Array):
+        return sum(provided_axes(part) for part in provider.members)
     return provider.axes if isinstance(provider, Device) else provider.interface.axes
 
 
 def has_tasks(provider: Provider) -> bool:
     """Whether a task provides something of it."""
-    members = provider.members if isinstance(provider, Facade) else ()
+    members = provider.members if isinstance(provider, Facade | Array) else ()
     return isinstance(provider, Server) or any(has_tasks(one) for one in members)
 
 

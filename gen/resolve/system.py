@@ -342,7 +342,7 @@ class _Sections:
         instances = site.instances.sound()
         for one in (one for one in site.owners.sound() if "." not in one.name):
             known += [f"{one.name}.{interface}" for interface in devices.provided(one).names()]
-        made = bindings_of(instances, given, known, self.findings)
+        made = bindings_of(instances, given, known, types, self.findings)
         wires, polls = event_wires(instances, given, self.findings)
         if self.findings.count() > count:
             self.sound.discard("connections")

@@ -93,7 +93,7 @@ def _commands(system: System) -> Iterator[Diagnostic]:
             logical = next((p for p in (caller, server) if p.logical is not None), None)
             if logical is not None and caller.name != server.name:
                 message = (
-                    f"{row} on {caller.name} uses {binding.need.name} of "
+                    f"{row} on {caller.name} uses {binding.need.command.name} of "
                     f"{binding.provider.instance} on {server.name}, and {logical.name} has a "
                     "logical execution time"
                 )

@@ -69,7 +69,7 @@ def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
     system = resolved.system
     for binding in system.bindings:
         component = system.instance(binding.instance).component
-        for row in component.senders(binding.need.name):
+        for row in component.senders(binding.need.command.name):
             served = component.served_by(row.name)
             if isinstance(binding.provider, Remote) and served is not None and served.depth > 1:
                 text = (

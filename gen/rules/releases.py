@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from ravenchart.gen.derive.calls import asking, callers_of
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.terms import named
-from ravenchart.gen.model.commands import Binding, Device, Provided, Remote, Server
+from ravenchart.gen.model.commands import Binding, Device, Gathered, Provided, Remote, Server
 from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Connection, End, Instance, Requests
 from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
@@ -118,8 +118,8 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
             yield message, activity.origin, f"{activity.name} is declared here", apart
     for binding in system.bindings:
         provider = binding.provider
-        if binding.instance == instance.name and not isinstance(provider, Device | None):
-            need = binding.need.name
+        if binding.instance == instance.name and not isinstance(provider, Device | Gathered | None):
+            need = binding.need.command.name
             message = f"{cannot}: {instance.name} calls `{need}` of another component"
             yield message, binding.origin, "that is bound here", "bind it to a device"
     for sent in system.messages:

@@ -95,8 +95,14 @@ class _Counting:
         return made
 
     def _pairs(self, pair: Mapping, around: Mapping, numbered: tuple[str, ...]) -> list[Mapping]:
-        """A connection or binding for each element."""
-        ends = {key: self.names(pair.text(key) or "", around, numbered) for key in ("from", "to")}
+        """A connection or binding for each element; a list of providers stays one."""
+        keys = ["from", "to"]
+        binds = numbered is NUMBERED["bindings"] and around is self.model.top
+        one_for_all = "*" in str(pair.get("to", "")) and "*" not in (pair.text("from") or "")
+        if isinstance(pair.get("to"), Items) or (binds and one_for_all):
+            keys, pair = ["from"], _same(pair)
+            pair["to"] = self.items(pair["to"], pair, numbered)
+        ends = {key: self.names(pair.text(key) or "", around, numbered) for key in keys}
         made = []
         for number in range(_size(list(ends.values()), pair)):
             one = _same(pair)
@@ -160,10 +166,11 @@ class _Counting:
             if isinstance(value, Mapping) and key != "signals":
                 made[key] = self.lists(value)
             elif isinstance(value, Items) or key == "to":
-                made[key] = self.items(value, form)
+                numbered = NUMBERED["bindings"] if key in ("array", "facade") else ()
+                made[key] = self.items(value, form, numbered)
         return made
 
-    def items(self, value: Value, near: Mapping) -> Value:
+    def items(self, value: Value, near: Mapping, numbered: tuple[str, ...] = ()) -> Value:
         """A list, or the text in its place, with a text for each element."""
         if isinstance(value, Text) and "*" not in value:
             return value
@@ -172,7 +179,7 @@ class _Counting:
             if not isinstance(item, Text) or "*" not in item:
                 made.append(item)  # type: ignore[arg-type]
                 continue
-            for name in self.names(item, self.model.top):
+            for name in self.names(item, self.model.top, numbered):
                 text = Text(name)
                 text.file, text.line = near.file, near.line
                 made.append(text)

@@ -29,7 +29,7 @@ def written_out(model: Model) -> Model:
     top["instances"] = parts.plain
     for section in ("connections", "bindings"):
         top[section] = Items(parts.joins(section))
-    for section, keys in (("messages", ("from", "to")), ("devices", ("facade", "choose"))):
+    for section, keys in (("messages", ("from", "to")), ("devices", ("array", "facade", "choose"))):
         top[section] = _like(model.section(section), {})
         for name, form in model.section(section).maps():
             top.map(section)[name] = parts.renamed(form, keys)
@@ -108,10 +108,21 @@ class _Parts:
                 if path and not ("." in start and "." in end):
                     continue  # it leads from a port or interface of this level
                 sources = self.ends(section, "from", path + start)
+                if isinstance(form.get("to"), Items):
+                    yield from self._gathered(form, sources)
+                    continue
                 for source, target in product(sources, self.ends(section, "to", path + end)):
                     made = _like(form, dict(form))
                     made["from"], made["to"] = _text(source, form), _text(target, form)
                     yield made
+
+    def _gathered(self, form: Mapping, sources: list[str]) -> Iterator[Mapping]:
+        """A binding of the model to several providers."""
+        ends = [one for text in form.texts("to") for one in self.ends("bindings", "to", text)]
+        for source in sources:
+            made = _like(form, dict(form))
+            made["from"], made["to"] = _text(source, form), Items(_text(one, form) for one in ends)
+            yield made
 
     def renamed(self, form: Mapping, keys: tuple[str, ...]) -> Mapping:
         """A message or device whose references are those to what they lead to."""

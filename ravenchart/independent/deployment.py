@@ -92,7 +92,8 @@ class Deployment:
         """Commands between nodes become messages, which are not derived again."""
         for binding in self.model.bindings:
             own = binding.text("from") or ""
-            for other in self.equipment.members(binding.text("to") or ""):
+            bound = (self.equipment.members(text) for text in binding.texts("to"))
+            for other in (one for members in bound for one in members):
                 if "." in other and self.node_of(own) != self.node_of(other):
                     where = f"{binding.file}:{binding.line}"
                     raise UnusableError(f"{where}: commands between nodes are not derived again")

@@ -33,10 +33,23 @@ class Equipment:
     def __init__(self, model: Model, component_of: Callable[[str], Mapping]) -> None:
         self.model, self.component_of = model, component_of
         self.devices = model.section("devices")
-        self.bound: dict[tuple[str, str], str] = {}
+        self.bound: dict[tuple[str, str], list[str]] = {}
         for binding in model.bindings:
             owner, _, interface = (binding.text("from") or "").rpartition(".")
-            self.bound[owner.lower(), interface.lower()] = binding.text("to") or ""
+            self.bound[owner.lower(), interface.lower()] = binding.texts("to")
+
+    def _bound(self, instance: str, interface: str, command: str) -> Offer | None:
+        """A command of what an interface is bound to; None where that has none of that name."""
+        providers = self.bound.get((instance.lower(), interface.lower()))
+        return self._joined(providers, command) if providers else None
+
+    def _joined(self, members: list[str], command: str) -> Offer | None:
+        """A command of an array, which all its members have."""
+        parts = [self._offered(member, command) for member in members]
+        found = [part for part in parts if part is not None]
+        if len(found) < len(parts):
+            return None
+        return Offer(sum(p.time for p in found), tuple(d for p in found for d in p.devices))
 
     def _offered(self, provider: str, command: str) -> Offer | None:
         """A command of a provider; None where it has none of that name."""
@@ -53,11 +66,7 @@ class Equipment:
             key = provides.name(command)
             return None if key is None else Offer(quantity(str(provides[key])), (name,))
         if "array" in form:
-            parts = [self._offered(member, command) for member in form.texts("array")]
-            found = [part for part in parts if part is not None]
-            if len(found) < len(parts):
-                return None
-            return Offer(sum(p.time for p in found), tuple(d for p in found for d in p.devices))
+            return self._joined(form.texts("array"), command)
         choose = form.map("choose")
         chosen = choose.name(command)
         members = form.texts("facade") if chosen is None else [str(choose[chosen])]
@@ -65,10 +74,10 @@ class Equipment:
         return next((one for one in offers if one is not None), None)
 
     def members(self, provider: str) -> list[str]:
-        """A provider, or those that a facade stands for."""
+        """A provider, or those that a facade or an array stands for."""
         form = self.devices.map(self.devices.name(provider) or provider)
-        facade = form.texts("facade")
-        return [one for member in facade for one in self.members(member)] or [provider]
+        parts = [*form.texts("facade"), *form.texts("array")]
+        return [one for member in parts for one in self.members(member)] or [provider]
 
     def kind(self, device: str) -> Mapping:
         """The type of a piece of equipment."""
@@ -79,19 +88,17 @@ class Equipment:
     def _needs(self, instance: str) -> Iterator[tuple[str, str | None, Offer | None]]:
         """Each command that an instance requires, its fallback, and what is bound to it."""
         for interface, form in self.component_of(instance).map("requires").maps():
-            provider = self.bound.get((instance.lower(), interface.lower()))
             commands = form.map("commands")
             for command in commands or form.texts("commands"):
-                offer = None if provider is None else self._offered(provider, command)
+                offer = self._bound(instance, interface, command)
                 fallback = commands.map(command).text("else") if commands else None
                 yield command, fallback, offer
 
     def _heard(self, instance: str) -> Iterator[Offer]:
         """The events of devices that the port region of an instance asks for."""
         for interface, form in self.component_of(instance).map("requires").maps():
-            provider = self.bound.get((instance.lower(), interface.lower()))
-            for event in form.map("events") if provider else ():
-                offer = self._offered(provider or "", event)
+            for event in form.map("events"):
+                offer = self._bound(instance, interface, event)
                 if offer is not None and offer.devices:
                     yield offer
 

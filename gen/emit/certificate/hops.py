@@ -79,6 +79,8 @@ def hops_of(system: System, chain: Chain) -> tuple[ClaimedHop, ...]:
             hops.append(_row(system, str(place), row, hops))
             if sure and isinstance(following, End):
                 sure = component.renews(row, following.name)
+    if chain.of_call and hops:
+        hops[0] = replace(hops[0], how="released", open=False)
     return tuple(_irregular(system, chain, hops))
 
 

@@ -59,10 +59,11 @@ from ravenchart.gen.emit.ada.statements import (
 from ravenchart.gen.emit.language.events import event_value
 from ravenchart.gen.language.terms import Type, named
 from ravenchart.gen.model.commands import Binding, Device, Need, Provided, Remote, Server
-from ravenchart.gen.model.component import Component, Port
+from ravenchart.gen.model.component import Component
 from ravenchart.gen.model.instances import Instance, Requests
 from ravenchart.gen.model.system import System
 
+from .gathered_answers import concluding
 from .remote_calls import (
     answers,
     asked_from_afar,
@@ -106,61 +107,75 @@ def delivers(system: System, binding: Binding) -> bool:
     return delivered(system.instance(binding.instance).component, binding.need)
 
 
-def call_body(system: System, instance: Instance, port: Port, lost: tuple[Stmt, ...]) -> Subprogram:
+def call_body(
+    system: System,
+    binding: Binding,
+    full: tuple[Stmt, ...],
+    lost: tuple[Stmt, ...],
+    more: tuple[Param, ...] = (),
+) -> Subprogram:
     """A required command as the instance calls it, whatever provides it.
 
-    ``lost`` counts a call to another node that is refused, since one is under way.
+    ``full`` follows where the call is refused. ``lost`` counts a call to another node that is
+    refused, since one is under way.
     """
-    binding = system.bound[instance.name, port.name]
-    params = () if port.is_void else (Param("Item", "in", type_name(system, port.type)),)
+    need = binding.need
+    params = item_params(system, need)
     if isinstance(binding.provider, Server):
-        declarations, body = _queued(system, instance, binding, binding.provider)
+        declarations, body = _queued(system, binding, binding.provider, full)
     elif isinstance(binding.provider, Remote):
-        full: tuple[Stmt, ...] = lost
-        if binding.need.on_full is not None:
-            event = event_value(instance.component, binding.need.on_full)
-            full = (*lost, do("Offer", event))
-        declarations, body = sent_call(system, binding.provider, full)
+        declarations, body = sent_call(system, binding.provider, (*lost, *full))
     else:
         assert isinstance(binding.provider, Device)
-        declarations, body = _direct(system, instance, binding, binding.provider)
-    name = f"Call_{ada_case(port.name)}"
-    return Subprogram(name, params, declarations=tuple(declarations), body=tuple(body))
+        declarations, body = _direct(system, binding, binding.provider)
+    name = f"Call_{ada_case(need.name)}"
+    return Subprogram(name, (*params, *more), declarations=tuple(declarations), body=tuple(body))
 
 
-def _direct(
-    system: System, instance: Instance, binding: Binding, device: Device
-) -> tuple[list[Decl], list[Stmt]]:
+def item_params(system: System, need: Need) -> tuple[Param, ...]:
+    """The parameter of a call that takes something."""
+    of_type = need.argument
+    return () if of_type is None else (Param("Item", "in", type_name(system, of_type)),)
+
+
+def told_full(instance: Instance, need: Need) -> tuple[Stmt, ...]:
+    """Raise the event of a call that is refused, where there is one."""
+    if need.on_full is None:
+        return ()
+    return (do("Offer", event_value(instance.component, need.on_full)),)
+
+
+def _direct(system: System, binding: Binding, device: Device) -> tuple[list[Decl], list[Stmt]]:
     need = binding.need
     given = list(arguments(ref("Item")) if need.argument is not None else ())
+    called = ref(ada_case(device.name), ada_case(need.command.name))
     if need.reply is None:
-        return [], [Do(ref(ada_case(device.name), ada_case(need.name)), tuple(given))]
+        return [], [Do(called, tuple(given))]
     taken = delivers(system, binding)
     reply = "Reply" if taken else "Unused_Reply"
     given.append(Arg(None, ref(reply)))
-    call = Do(ref(ada_case(device.name), ada_case(need.name)), tuple(given))
+    call = Do(called, tuple(given))
     after = (do(ref(f"Take_{ada_case(need.name)}"), ref(reply)),) if taken else ()
     return [Object(reply, type_name(system, need.reply))], [call, *after]
 
 
 def _queued(
-    system: System, instance: Instance, binding: Binding, server: Server
+    system: System, binding: Binding, server: Server, full: tuple[Stmt, ...]
 ) -> tuple[list[Decl], list[Stmt]]:
     need = binding.need
     asking = callers_of(system, server.instance, server.interface)
     caller = number(asking.index(binding))
     request = _request(system, server, need, caller, ref("Item"))
-    status = "Status" if need.on_full is not None else "Unused_Status"
+    status = "Status" if full else "Unused_Status"
     put = ref(f"Put_{ada_case(server.interface.name)}")
-    if server.instance != instance.name:
+    if server.instance != binding.instance:
         put = ref(ada_case(server.instance), put)
     body: list[Stmt] = [do(put, request, ref(status))]
     declarations: list[Decl] = [Object(status, STATUS)]
-    if need.on_full is not None:
+    if full:
         declarations.append(UseType(STATUS))
-        full = OperatorChain("/=", (ref(status), ref("Ravenchart.Queueing.Queued")))
-        event = event_value(instance.component, need.on_full)
-        body.append(IfStatement(((full, (do("Offer", event),)),)))
+        refused = OperatorChain("/=", (ref(status), ref("Ravenchart.Queueing.Queued")))
+        body.append(IfStatement(((refused, full),)))
     return declarations, body
 
 
@@ -170,11 +185,11 @@ def _request(
     """An item in the queue of an interface: the command, its caller, and the argument."""
     owner = ada_case(system.instance(server.instance).component.name)
     package = ref(owner, requests_package(server.interface))
-    rows = [Arg("Name", ref(package, f"{ada_case(need.name)}_Asked"))]
+    rows = [Arg("Name", ref(package, f"{ada_case(need.command.name)}_Asked"))]
     if numbered(server.interface):
         rows.append(Arg("Caller", caller))
     if need.argument is not None and item is not None:
-        rows.append(Arg(ada_case(need.name), item))
+        rows.append(Arg(ada_case(need.command.name), item))
     if len(rows) < len(_fields(system, server.interface)):
         rows.append(Arg(OTHERS, BOX))
     return Aggregate(tuple(rows), ref(package, "Request"))
@@ -216,7 +231,12 @@ def take_spec(system: System, need: Need) -> Subprogram:
 
 
 def take_body(system: System, instance: Instance, need: Need) -> Subprogram:
-    """Keeps a reply for those who look at it, and raises its event."""
+    """Keeps a reply for those who look at it, and raises its event.
+
+    A reply of an element of an array is one of several to the same call.
+    """
+    if need.is_part:
+        return concluding(system, need)
     body: list[Stmt] = []
     spec = take_spec(system, need)
     is_looked_at = False
@@ -355,9 +375,10 @@ def _rooms(
     """For each reply its parameter, the room for it, and its type; some are sent to nobody."""
     local = callers_of(system, instance.name, provided)
     afar = calls_from_afar(system, instance.name, provided)
-    wanted = {binding.need.name for binding in local if delivers(system, binding)}
+    wanted = {binding.need.command.name for binding in local if delivers(system, binding)}
     backs = (reply_to(system, message) for message in afar)
-    wanted |= {back.call.need.name for back in backs if back is not None and back.call is not None}
+    heard_from = (back.call for back in backs if back is not None)
+    wanted |= {call.need.command.name for call in heard_from if call is not None}
     for one in provided.requests:
         if one.reply is not None:
             name = reply_param(one.name)
@@ -376,7 +397,7 @@ def served(
             take = ref(f"Take_{ada_case(binding.need.name)}")
             take = take if is_own else ref(ada_case(binding.instance), take)
             asks = OperatorChain("=", (ref("Asked.Caller"), number(index)))
-            reply = ref(reply_param(binding.need.name))
+            reply = ref(reply_param(binding.need.command.name))
             replied.append(IfStatement(((asks, (do(take, reply),)),)))
     replied += replies(system, instance, provided, len(asking), reply_param)
     return (
@@ -409,8 +430,8 @@ def published(system: System, instance: Instance) -> Iterator[tuple[Subprogram, 
     for binding in system.bindings:
         provider, item = binding.provider, published_by(binding)
         if isinstance(provider, Server) and provider.instance == instance.name:
-            need = binding.need
-            if item is not None and need.reply is not None and need.name not in seen:
-                seen.add(need.name)
+            need, name = binding.need, binding.need.command.name
+            if item is not None and need.reply is not None and name not in seen:
+                seen.add(name)
                 params = (Param("Reply", "out", type_name(system, need.reply)),)
-                yield Subprogram(ada_case(need.name), params), item
+                yield Subprogram(ada_case(name), params), item

@@ -151,11 +151,12 @@ def watch_body(need: Need, kept: str, passed: tuple[Stmt, ...]) -> Subprogram:
 def watched(system: System, instance: Instance, row: Region | Activity) -> Iterator[Stmt]:
     """The first statements of a row that calls or reads on other nodes: its watches."""
     for binding in system.bindings:
-        made, name = binding.provider, binding.need.name
-        calls = isinstance(made, Remote) and made.reply is not None and name in row.sends
+        made, need = binding.provider, binding.need
+        called = need.command.name in row.sends
+        calls = isinstance(made, Remote) and made.reply is not None and called
         looks = isinstance(made, RemoteRead) and made.watcher == row.name
         if binding.instance == instance.name and (calls or looks):
-            yield do(watch_name(name))
+            yield do(watch_name(need.name))
 
 
 def answers(system: System, instance: Instance) -> Iterator[tuple[Subprogram, Subprogram]]:
@@ -232,7 +233,7 @@ def replies(
             asks = member(caller, between(first, first + NUMBER.last))
             caller = OperatorChain("-", (caller, number(first)))
         called = call("Ravenchart.Number", caller)
-        frame = _framed(back, called, ref(reply(need.name)), need.reply)
+        frame = _framed(back, called, ref(reply(need.command.name)), need.reply)
         send = ref(ada_case(back.bus), f"Send_{ada_case(back.name)}")
         yield IfStatement(((asks, (do(send, frame),)),))
 

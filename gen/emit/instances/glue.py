@@ -40,7 +40,6 @@ from ravenchart.gen.emit.ada.naming import (
     value,
 )
 from ravenchart.gen.emit.ada.statements import (
-    Assign,
     Comment,
     Pragma,
     Stmt,
@@ -48,26 +47,21 @@ from ravenchart.gen.emit.ada.statements import (
 )
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import (
-    call_body,
-    from_afar,
     providers,
-    published,
-    put_body,
-    put_spec,
     reply_boards,
     request_queue,
-    take_body,
-    take_spec,
-    taken_replies,
+)
+from ravenchart.gen.emit.commands.gathered_answers import (
+    ANSWERS,
+    gathered,
+    gathering_objects,
 )
 from ravenchart.gen.emit.commands.remote_calls import (
     call_objects,
     heard_objects,
-    remotes,
     units_of,
-    watch_body,
 )
-from ravenchart.gen.emit.commands.remote_reads import copies, copy_name, copy_objects, read_units
+from ravenchart.gen.emit.commands.remote_reads import copy_objects, read_units
 from ravenchart.gen.emit.components.contracts import stored_type
 from ravenchart.gen.emit.components.packages import activity_package, published_type
 from ravenchart.gen.emit.language.configurations import Configurations
@@ -77,12 +71,12 @@ from ravenchart.gen.emit.tables.executions import ELEMENT_ID, executing, run_spe
 from ravenchart.gen.emit.tables.port_calls import CROSSINGS, VISIBLE, put_of
 from ravenchart.gen.emit.tables.trace_calls import fault_units
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
-from ravenchart.gen.model.commands import Need, Provided
 from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.logical import links_by_port
 from ravenchart.gen.model.statechart import Overflow
 from ravenchart.gen.model.system import System, Work
 
+from .commands import Commands
 from .fills import fill_bodies, fill_specs, queued_regions
 from .instants import instant_objects, next_instants, units_of_instants
 from .offering import asked, offer_steps
@@ -99,14 +93,13 @@ from .releasing import (
     wait_spec,
 )
 from .rows import Rows
-from .site import Site
 from .transmission import answering
 
 _UNUSED = "Unused"
 """A variable that nothing reads; compiler and gnatprove know names with this word."""
 
 
-class Glue(Site):
+class Glue(Commands):
     """Builds the package of one instance."""
 
     def units(self, header: str) -> tuple[Unit, ...]:
@@ -143,6 +136,8 @@ class Glue(Site):
         names |= queue_units(self, self._served())
         if any(b.instance == self.instance.name for b in self.system.bindings):
             names.add(ref("Ravenchart.Queueing"))
+        if any(gathered(self.system, self.instance)):
+            names |= {ANSWERS, ref("Ravenchart.Gatherings"), *fault_units(root)}
         names |= set(units_of(self.system, self.instance))
         names |= set(read_units(self.system, self.instance))
         names.add(ref("Ravenchart.Blackboards"))
@@ -210,53 +205,6 @@ class Glue(Site):
     def _offer_spec(self) -> Subprogram:
         return Subprogram("Offer", (Param("Item", "in", ref(self.component, "Event")),))
 
-    def _command_specs(self) -> Iterator[Decl]:
-        for provided in self._served():
-            yield put_spec(self.instance, provided)
-            yield Comment(f"[{self._element(provided.name)}] queue a request; never blocks.")
-        for spec, item in published(self.system, self.instance):
-            yield spec
-            yield Comment(f"[{self._element(item)}] the value published last.")
-        for binding in taken_replies(self.system, self.instance):
-            yield take_spec(self.system, binding.need)
-            yield Comment(f"[{self._element(binding.need.name)}] deliver the reply.")
-        for spec, _ in from_afar(self.system, self.instance):
-            yield spec
-            yield Comment(
-                f"[{self.instance.name}] called for messages of another node; never blocks."
-            )
-
-    def _served(self) -> tuple[Provided, ...]:
-        return tuple(one for one in self.instance.component.provides if one.server is not None)
-
-    def _command_bodies(self) -> Iterator[Decl]:
-        system, instance = self.system, self.instance
-        for provided in self._served():
-            yield put_body(instance, provided, self._lost(provided.name))
-        for spec, item in published(system, instance):
-            read: Stmt = do(ref(f"{ada_case(item)}_Board", "Read"), ref("Reply"))
-            if not self._has_object(item):
-                read = Assign("Reply", ref(f"{ada_case(item)}_Own"))
-            yield Subprogram(spec.name, spec.params, body=(read,))
-        for binding in taken_replies(system, instance):
-            yield take_body(system, instance, binding.need)
-        yield from (body for _, body in from_afar(system, instance))
-        for remote in remotes(system, instance):
-            if remote.reply is not None:
-                kept = f"{ada_case(remote.need.name)}_Call"
-                yield watch_body(remote.need, kept, self._passed(remote.need))
-        for copy in copies(system, instance):
-            yield watch_body(copy.need, copy_name(copy.need), self._passed(copy.need))
-
-    def _lost(self, name: str) -> tuple[Stmt, ...]:
-        """Report a call that found no place."""
-        return (self._fault("Queue_Overflow", name, "port"),)
-
-    def _passed(self, need: Need) -> tuple[Stmt, ...]:
-        """Report a reply that did not come in time, and tell of it."""
-        told = () if need.on_timeout is None else (self._raise(need.on_timeout),)
-        return (self._fault("Stale_Input", need.name, "port"), *told)
-
     # --- body: objects
 
     def _body(self) -> tuple[Decl, ...]:
@@ -264,6 +212,7 @@ class Glue(Site):
         items += [*self._data_objects(), *self._region_objects()]
         items += [request_queue(self.system, self.instance, one) for one in self._served()]
         items += reply_boards(self.system, self.instance)
+        items += gathering_objects(self.system, self.instance)
         items += call_objects(self.system, self.instance)
         items += copy_objects(self.system, self.instance)
         items += heard_objects(self.system, self.instance)
@@ -280,11 +229,13 @@ class Glue(Site):
         used = {n for r in component.regions for n in r.sends}
         used |= {n for a in component.activities for n in a.sends}
         items += [
-            self._send_body(p)
+            body
             for p in component.outputs()
             if p.name in used and not self._is_idle(p)
+            for body in (self._call_bodies(p) if p.is_command else (self._send_body(p),))
         ]
         rows = Rows(self.system, self.instance, self.noted)
+        items += rows.read_arrays()
         for slot in self._slots():
             match slot.work:
                 case Work.PORT_REGION:
@@ -423,8 +374,6 @@ class Glue(Site):
         return Subprogram(f"Put_{name}", self._put_spec(port).params, body=body)
 
     def _send_body(self, port: Port) -> Subprogram:
-        if port.is_command:
-            return call_body(self.system, self.instance, port, self._lost(port.name))
         ends, messages = self._targets(port.name)
         visible = links_by_port(self.system)
         recorded = self._record(port.name, "Item")

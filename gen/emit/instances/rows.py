@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from ravenchart.gen.emit.ada.declarations import Decl, Object, Param, Subprogram, UseType
 from ravenchart.gen.emit.ada.expressions import (
@@ -40,6 +40,7 @@ from ravenchart.gen.emit.ada.statements import (
 from ravenchart.gen.emit.charts.several_transitions import LIST
 from ravenchart.gen.emit.charts.shape import RegionShape
 from ravenchart.gen.emit.commands.device_calls import asked_args, request_objects, served
+from ravenchart.gen.emit.commands.gathered_calls import array_reads, read_array
 from ravenchart.gen.emit.commands.remote_calls import watched
 from ravenchart.gen.emit.commands.remote_reads import copy_name, publishes
 from ravenchart.gen.emit.components.packages import (
@@ -55,7 +56,7 @@ from ravenchart.gen.emit.components.packages import (
 from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import names_read
-from ravenchart.gen.model.commands import Binding, Device, Poll, RemoteRead, Server
+from ravenchart.gen.model.commands import Binding, Device, Gathered, Poll, RemoteRead, Server
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
@@ -225,11 +226,17 @@ class Rows(Site):
         need, provider = binding.need, binding.provider
         if need.fallback is not None and provider is None:
             return self._copy_in(need.fallback.item, target)
+        if isinstance(provider, Gathered):
+            return read_array(binding, ref(target))
         if isinstance(provider, RemoteRead):
             return do(ref(copy_name(need), "Read"), ref(target))
         assert isinstance(provider, Device | Server)
         owner = provider.instance if isinstance(provider, Server) else provider.name
-        return do(ref(ada_case(owner), ada_case(need.name)), ref(target))
+        return do(ref(ada_case(owner), ada_case(need.command.name)), ref(target))
+
+    def read_arrays(self) -> Iterator[Subprogram]:
+        """How the rows read arrays."""
+        yield from array_reads(self.system, self.instance, self._read_command)
 
     def _step_region(self, shape: RegionShape, package: Named) -> Subprogram:
         region = shape.region

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from ravenchart.gen.emit.language.configurations import Configurations
-from ravenchart.gen.model.commands import RemoteRead
+from ravenchart.gen.model.commands import Remote, RemoteRead
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
 
@@ -69,8 +69,11 @@ def elements(system: System) -> tuple[MappedElement, ...]:
         for port in component.ports:
             add(f"{instance.name}.{port.name}", "port", port.origin)
         for binding in system.bindings:
-            if binding.instance == instance.name and isinstance(binding.provider, RemoteRead):
-                need = binding.need
+            need = binding.need
+            provider = binding.provider
+            late = isinstance(provider, RemoteRead)
+            late = late or (need.is_part and isinstance(provider, Remote) and bool(provider.reply))
+            if binding.instance == instance.name and late:
                 add(f"{instance.name}.{need.name}", "port", need.origin)
         for provided in component.provides:
             if provided.server is not None:

@@ -104,6 +104,7 @@ OF_EXAMPLES = {
     / "library"
     / "blocks",
     one_of("docs/libraries.md", "smoother:"): ROOT / "tests" / "feature" / "library",
+    one_of("docs/arrays.md", "time_limit: 40 ms"): ROOT / "tests" / "feature" / "gathered",
 }
 """Parts that stand in a model of the repository, which other tests check."""
 
