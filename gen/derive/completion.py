@@ -137,7 +137,7 @@ def tasks_of(system: System) -> tuple[Task, ...]:
     above = top + (2 if system.messages else 1)
     for released in system.processors:
         if (line := released.released_by_interrupt) is not None:
-            host, interrupt = system.node(line.node), system.interrupt(line)
+            host, interrupt = system.node(line.node), system.node(line.node).interrupt(line.name)
             level = above + (host.supervision is not None) + (host.probe is not None)
             times = released.period, released.period, interrupt.wcet
             made = _own_task(host, interrupt.name, *times, level)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ravenchart.gen.language.terms import NO_TIME, Ns
+from ravenchart.gen.language.terms import NO_TIME, Ns, named
 from ravenchart.gen.origins import Origin
 
 from .statechart import Timing
@@ -115,6 +115,10 @@ class Node:
     interrupts: tuple[Interrupt, ...] = ()
     database_name: str | None = None
     """Its name in databases; None: that in the model."""
+
+    def interrupt(self, name: str) -> Interrupt:
+        """The interrupt called ``name``; KeyError where there is none."""
+        return named(self.interrupts, name)
 
     @property
     def in_database(self) -> str:

@@ -24,7 +24,7 @@ from .buses import Bus, Message, Reception
 from .commands import Binding, Device, Poll
 from .component import Component
 from .instances import Connection, End, Events, Instance, Queue, Requests
-from .nodes import Interrupt, InterruptLine, Node
+from .nodes import InterruptLine, Node
 from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
 from .statechart import Timing
@@ -34,8 +34,6 @@ UNREADY = "RV-0804"
 
 UNFIT_PORT = "RV-0715"
 """A port, interface or region that cannot release a processor."""
-
-# --- Deployment --------------------------------------------------------------
 
 
 class Work(Enum):
@@ -81,8 +79,7 @@ class Slot:
 class Processor:
     """A command processor: one task. Sporadic when ``released_by`` names what releases it.
 
-    That is a bus whose frames it receives, a queue (of an input port, of the calls of a provided
-    interface, or of the events of a region), or an interrupt.
+    That is a bus whose frames it receives, a queue of a port, interface or region, or an interrupt.
     ``period`` is the minimum separation of a sporadic one. ``priority`` counts
     upwards from 1, larger is more urgent, unique in the node unless given.
     """
@@ -473,10 +470,6 @@ class System:
     def called(self, served: Requests | Events) -> Processor | None:
         """The processor that calls of an interface, or events of a region, release; else None."""
         return next((one for one in self.processors if one.released_by == served), None)
-
-    def interrupt(self, line: InterruptLine) -> Interrupt:
-        """The interrupt of a line; KeyError where there is none."""
-        return named(self.node(line.node).interrupts, line.name)
 
     def object(self, element: str) -> SharedObject:
         """The protected object with that id; KeyError where there is none."""

@@ -66,7 +66,7 @@ from ravenchart.gen.emit.tables.trace_calls import (
 from ravenchart.gen.emit.tables.trace_map import VALUE, MappedElement, elements
 from ravenchart.gen.emit.tables.value_calls import UNIT, recording
 from ravenchart.gen.model.instances import End, Events, Requests
-from ravenchart.gen.model.nodes import Interrupt, InterruptLine, Node
+from ravenchart.gen.model.nodes import InterruptLine, Node
 from ravenchart.gen.model.recording import OBJECT
 from ravenchart.gen.model.system import Processor, Slot, System, Work
 
@@ -274,7 +274,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
     if traced(system):
         context |= {ref(root, "Trace"), ref("Ravenchart.Traces")}
     spec = Package(name, tuple(items), (SPARK,))
-    interrupts = () if line is None else _interrupts(processor, system.interrupt(line))
+    interrupts = () if line is None else _interrupts(system, processor, line)
     bodies = (*interrupts, *_processor_body(system, processor), *own)
     body = Package(name, bodies, (SPARK,), is_body=True)
     return [
@@ -337,15 +337,16 @@ _SIGNALS = {"SIGUSR1": 10, "SIGUSR2": 12}
 """Numbers of Linux."""
 
 
-def _interrupts(processor: Processor, interrupt: Interrupt) -> tuple[Decl, ...]:
+def _interrupts(system: System, processor: Processor, line: InterruptLine) -> tuple[Decl, ...]:
     """Where the interrupts of a processor come from, and how it waits for them."""
+    interrupt = system.node(line.node).interrupt(line.name)
     signal = 0 if interrupt.signal is None else _SIGNALS[interrupt.signal]
     source = arguments(
         Signal=number(signal), Number=number(interrupt.number or 0), Arrive=ref("Arrivals.Arrive")
     )
     lost = fault("Queue_Overflow", processor.name, "processor")
     return (
-        Comment(f"[{processor.released_by}]"),
+        Comment(f"[{line}]"),
         GenericInstance("Arrivals", _ARRIVALS, arguments(Separation=fact(processor.name, "T"))),
         GenericInstance("Source", _SOURCES, source),
         Pragma("Unreferenced", (ref("Source"),)),
