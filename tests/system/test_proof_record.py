@@ -23,6 +23,7 @@ NAMES = (
     house.FLOATS,
     house.VALUES,
     house.LOGICAL,
+    house.GATHERED,
     house.EVENTS,
     house.INTERRUPTS,
     house.BUS,
