@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.quantities import shown
-from ravenchart.gen.model.commands import Device
+from ravenchart.gen.model.commands import Device, Gathered
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.system import Processor, Slot, System
 from ravenchart.gen.origins import Origin
@@ -40,10 +40,12 @@ def waiting_rows(
     own = {slot.name for slot in processor.slots if slot.owner == instance.name}
     rows = [row for row in instance.component.runnables() if row.name in own]
     used = {name for row in rows for name in (*row.sends, *row.reads)}
+    told: set[str] = set()
     for binding in system.bindings:
-        need = binding.need.name
-        afar = binding.instance == instance.name and need in used
-        if afar and not isinstance(binding.provider, Device | None):
+        need = binding.need.command.name
+        afar = binding.instance == instance.name and need in used - told
+        if afar and not isinstance(binding.provider, Device | Gathered | None):
+            told.add(need)
             message = f"{cannot}: its processor calls `{need}` of another component"
             yield message, binding.origin, "that is bound here", "bind it to a device"
     for sent in system.messages:

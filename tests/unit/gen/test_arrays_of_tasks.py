@@ -199,3 +199,53 @@ def test_the_drawing_leads_to_each_element() -> None:
     joints = [DeviceLink("arm_1", "Joints", f"joint_{n}", "Motion") for n in (1, 2, 3)]
     clamps = [DeviceLink("arm_1", "Grip", n, None) for n in ("clamp_1", "clamp_2", "vice_1")]
     assert list(links) == [*joints, *clamps]
+
+
+# --- Released by calls ---------------------------------------------------------------
+
+GATE = """\
+system: Gates
+commands:
+  Press: {kind: write, argument: Force, per_axis: true}
+  Open: {kind: void}
+types:
+  Force: {range: [0, 50], unit: N}
+device_types:
+  Clamp: {body: simulated, provides: {Press: 4 us}}
+  Vice: {body: simulated, provides: {Press: 3 us}}
+devices:
+  clamp_1: {type: Clamp}
+  vice_1: {type: Vice}
+components:
+  Holder:
+    provides: {Holding: {queue: 2, served_by: hold, commands: [Press]}}
+    activities:
+      hold: {period: 10 ms, wcet: 20 us, body: user}
+  Gate:
+    requires: {Grip: {axes: 2, commands: [Press]}}
+    provides: {Gating: {queue: 2, served_by: open, commands: [Open]}}
+    activities:
+      open: {period: 10 ms, wcet: 20 us, calls: [Press], body: user}
+  Guard:
+    requires: {Way: {commands: [Open]}}
+    activities:
+      watch: {period: 20 ms, wcet: 20 us, calls: [Open], body: user}
+nodes: {board: {context_switch: 5 us, critical_section: 2 us}}
+instances:
+  holder: {component: Holder, node: board, count: 2}
+  gate_1: {component: Gate, node: board}
+  guard_1: {component: Guard, node: board}
+bindings:
+  - {from: gate_1.Grip, to: [clamp_1, vice_1]}
+  - {from: guard_1.Way, to: gate_1.Gating}
+processors:
+  gating: {released_by: gate_1.Gating, period: 10 ms, stack: 16 KiB, activities: [gate_1.open]}
+  rest: {stack: 16 KiB, activities: [holder_*.hold, guard_1.watch]}
+"""
+
+
+def test_a_released_server_may_call_an_array_of_devices_and_none_of_tasks() -> None:
+    found = _loaded(GATE)
+    assert found.system is not None, _said(found)
+    said = _said(_loaded(GATE, ("[clamp_1, vice_1]", "holder_*.Holding")))
+    assert said.count("calls `Press` of another component") == 1
