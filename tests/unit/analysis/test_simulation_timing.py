@@ -13,6 +13,7 @@ import pytest
 from ravenchart.analysis.core import can, holistic
 from ravenchart.analysis.core.blocking import Section
 from ravenchart.analysis.core.bus import Bus, Errors, Frame
+from ravenchart.analysis.core.chains import latency
 from ravenchart.analysis.core.fixed_priority import analyse_tasks, response_under
 from ravenchart.analysis.core.holistic import Network
 from ravenchart.analysis.core.platform import Platform
@@ -25,6 +26,7 @@ from ravenchart.analysis.simulation.phases import (
     PhaseScenario,
 )
 from tests.support import worst_phases
+from tests.support.random_flows import observed_chain, random_chain
 from tests.support.random_networks import (
     random_distribution,
     random_network,
@@ -171,6 +173,34 @@ def test_no_random_system_of_several_cores_and_buses_is_observed_above_its_bound
             bounded += bound is not None
             far += bound is not None and name in {"x0.2", "x1.2", "x2.2"}
     assert bounded > compared // 2 and far > 20
+
+
+@pytest.mark.slow
+def test_no_chain_of_a_random_system_is_observed_above_its_bounds() -> None:
+    """Ages, reactions and backlogs over several cores and buses, by variables and by queues."""
+    ages = reactions = backlogs = close = 0
+    for seed in range(SYSTEMS):
+        chance = random.Random(seed)
+        network = random_distribution(chance)
+        chain = random_chain(network, chance)
+        if chain is None:
+            continue
+        bound = latency(chain, network, holistic.analyse(network))
+        until = 16 * max(item.period for item in network.items().values())
+        seen = simulate(network, chance_scenario(network, chance, until), until, record=True)
+        found = observed_chain(chain, seen)
+        if bound.age is not None and found.outputs:
+            assert found.age <= bound.age, (seed, chain, found, bound)
+            ages += 1
+            close += found.age > bound.age // 2
+        if bound.reaction is not None and found.outputs:
+            assert found.reaction <= bound.reaction, (seed, chain, found, bound)
+            reactions += 1
+        for hop in bound.hops:
+            if hop.backlog and hop.step.name in found.backlogs:
+                assert found.backlogs[hop.step.name] <= hop.backlog, (seed, chain, found, bound)
+                backlogs += 1
+    assert min(ages, reactions) > SYSTEMS // 3 and backlogs > SYSTEMS // 10 and close > 20
 
 
 @pytest.mark.slow
