@@ -19,7 +19,7 @@ from ravenchart.building import checking, generation
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.ada.naming import ada_case, type_name
 from ravenchart.gen.emit.buses.codecs import WORDS, codec_name, words_of
-from ravenchart.gen.emit.program import folder_of, generate
+from ravenchart.gen.emit.program import folder_of, generate, library_files
 from ravenchart.gen.language.terms import EnumerationType
 from ravenchart.gen.model.buses import Message
 from ravenchart.gen.model.signals import Signal
@@ -166,13 +166,14 @@ def runners_of(
     """
     files = generate(checked.system, generation.claims(checked))
     databases = {name: text for name, text in files.items() if name.endswith(".dbc")}
+    libraries = {n: t for one in checked.system.libraries for n, t in library_files(one).items()}
     for part in programs(checked.system):
         if part.messages:
             at = folder_of(part, checked.system)
             own = {n.removeprefix(at): t for n, t in files.items() if n.startswith(at)}
             place = folder / part.nodes[0].name
             place.mkdir(parents=True)
-            for name, text in {**own, **databases}.items():
+            for name, text in {**libraries, **own, **databases}.items():
                 if "/" not in name:
                     (place / name).write_text(text, encoding="utf-8")
             yield place, Runner.built(part, place, place, machine)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from ravenchart.gen.emit.program import generate
+from ravenchart.gen.emit.program import generate, library_files
 from ravenchart.gen.files.load import deployments_of
 from ravenchart.gen.model.claims import Claims
 from ravenchart.gen.pipeline import load
@@ -21,6 +21,8 @@ from tests.house import EXAMPLES, MODELS
 
 pytestmark = pytest.mark.slow
 
+NOT_ALWAYS = "no entities of*"
+"""Of a package of a library that is only a prefix: the compiler warns in some of these units."""
 OFF = re.compile(r'^ *pragma Warnings \(Off, "([^"]*)".*\n', re.M)
 FOLDERS = {name: ROOT / "examples" / name for name in EXAMPLES} | MODELS
 RUNTIME = (
@@ -34,7 +36,9 @@ def _written(folder: Path, home: Path) -> Iterator[Path]:
     for number, path in enumerate(deployments_of(folder / "model.yaml")):
         system = load(path).system
         assert system is not None
-        for name, text in generate(system, Claims()).items():
+        libraries = [library_files(one) for one in system.libraries]
+        parts = [*libraries, generate(system, Claims())]
+        for name, text in (pair for part in parts for pair in part.items()):
             file = home / str(number) / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
@@ -53,10 +57,12 @@ def _said(unit: Path, users: list[Path]) -> str:
 
 @pytest.mark.parametrize("name", FOLDERS)
 def test_without_the_line_the_compiler_warns(name: str, tmp_path: Path) -> None:
-    users = [path.parent for path in FOLDERS[name].glob("user/**/*.ad[sb]")]
+    users = [path.parent for path in FOLDERS[name].glob("**/user/**/*.ad[sb]")]
     for file in list(_written(FOLDERS[name], tmp_path)):
         text = file.read_text(encoding="utf-8")
         for line in OFF.finditer(text):
+            if line[1] == NOT_ALWAYS:
+                continue
             without = text[: line.start()] + text[line.end() :]
             file.write_text(without, encoding="utf-8")
             said = _said(file, users)
@@ -74,6 +80,7 @@ def test_the_examples_have_the_lines_that_are_looked_for() -> None:
         for line in OFF.finditer(path.read_text(encoding="utf-8"))
     ]
     assert found == [
+        *[("autopilot.ads", "use clause for type*")] * 3,
         ("canopen_device-controller-inbox.ads", "*can * be*"),
         ("crossing_system-crossing-lights.ads", "*array aggregate using*"),
         ("infusion_system-pump-infusion.ads", "*array aggregate using*"),

@@ -191,8 +191,7 @@ def test_a_row_that_leaves_its_table_leaves_its_phase(row: str, gone: str) -> No
 def test_the_other_elements_of_an_array_keep_their_phase(
     tmp_path: Path, written: str, left: str
 ) -> None:
-    for file in (ROOT / "examples" / "autopilot").glob("*.yaml"):
-        shutil.copy(file, tmp_path)
+    shutil.copytree(ROOT / "examples" / "autopilot", tmp_path, dirs_exist_ok=True)
     model, head = tmp_path / "model.yaml", "  moving:\n    schedule: table\n"
     text = model.read_text(encoding="utf-8")
     assert text.count(head) == 1

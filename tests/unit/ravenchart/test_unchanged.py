@@ -49,9 +49,9 @@ def checks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[Pat
     checked: list[Path] = []
     check = checking.check
 
-    def counted(path: Path, *, deadlines: bool = True, finish: bool = False) -> checking.Checked:
+    def counted(path: Path, **options: bool) -> checking.Checked:
         checked.append(path)
-        return check(path, deadlines=deadlines, finish=finish)
+        return check(path, **options)
 
     monkeypatch.setattr("ravenchart.building.checking.check", counted)
     unchanged._tool.cache_clear()
