@@ -49,9 +49,11 @@ def checks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[Pat
     checked: list[Path] = []
     check = checking.check
 
-    def counted(path: Path, **options: bool) -> checking.Checked:
+    def counted(
+        path: Path, *, deadlines: bool = True, finish: bool = False, library: bool = False
+    ) -> checking.Checked:
         checked.append(path)
-        return check(path, **options)
+        return check(path, deadlines=deadlines, finish=finish, library=library)
 
     monkeypatch.setattr("ravenchart.building.checking.check", counted)
     unchanged._tool.cache_clear()
