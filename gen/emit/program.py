@@ -49,6 +49,7 @@ from ravenchart.gen.emit.language.libraries import (
     in_libraries,
     library_units,
     only_prefixes,
+    renamed_packages,
 )
 from ravenchart.gen.emit.language.quiet import (
     DecidedStates,
@@ -121,6 +122,7 @@ class _Maker:
         #  cannot see it through the root
         self.blind = not any(map(partial(counts_by_itself, system), system.types))
         self.components = emitted_components(system)
+        self.renamed = renamed_packages(system)
         self.decided = DecidedStates(self.components)
 
     def logic(self, meanwhile: Callable[[], T]) -> tuple[list[MadeUnit], T]:
@@ -132,7 +134,7 @@ class _Maker:
             meanwhile,
             worthwhile=sum(len(c.regions) for c in self.components) >= MANY,
         )
-        seen = self._read([*library_units(self.system, self.header)])
+        seen = self._read([*library_units(self.renamed, self.header)])
         return [*root, *(made for part in parts for made in part), *seen], besides
 
     def _of_component(self, component: Component) -> list[MadeUnit]:
@@ -164,8 +166,8 @@ class _Maker:
         texts = [print_item(unit) for unit in found]
         read = readings(found, root_package(self.system))
         left = [_pruned(unit, root_package(self.system)) for unit in found]
-        left = [in_libraries(unit, self.system) for unit in left]
-        prefixes = [only_prefixes(unit, self.system) for unit in left]
+        left = [in_libraries(unit, self.renamed) for unit in left]
+        prefixes = [only_prefixes(unit, self.renamed) for unit in left]
         left = left if self.whole else [_context(unit) for unit in left]
         return [MadeUnit(*parts) for parts in zip(left, texts, read, prefixes, strict=True)]
 

@@ -20,7 +20,6 @@ from ravenchart.building.checking import Checked
 from ravenchart.building.programs import Program
 from ravenchart.building.stacks import read_record
 from ravenchart.failures import Refused
-from ravenchart.gen.emit.program import generate, library_files
 from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
@@ -119,7 +118,9 @@ def gather(
         checked,
         chosen,
         nodes,
-        tuple(_node(one, chosen, _of_library(one), why, given) for one in libraries),
+        tuple(
+            _node(one, chosen, generation.texts_of(one.checked), why, given) for one in libraries
+        ),
         runtime,
         tuple(outside_spark.reasons_of(checked.system, folder).items()),
         reasons,
@@ -132,11 +133,6 @@ def gather(
     )
 
 
-def _of_library(program: Program) -> dict[str, str]:
-    """The files that a library gives."""
-    return library_files(program.checked.system)
-
-
 def _generated(checked: Checked) -> tuple[dict[str, str], str]:
     """The files that the model gives; none and the reason where it gives none."""
     late = next((one for one in findings(checked.analysis) if one.is_error), None)
@@ -144,7 +140,7 @@ def _generated(checked: Checked) -> tuple[dict[str, str], str]:
         return {}, late.message
     try:
         generation.without_clashes(checked)
-        return generate(checked.system, generation.claims(checked)), ""
+        return generation.texts_of(checked), ""
     except Refused as refused:
         found = [str(getattr(one, "message", "")) for one in refused.found]
         return {}, next(iter(found), "") or "the model cannot be certified"

@@ -11,7 +11,7 @@ So no other unit knows which component a library declares.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import replace
 
 from ravenchart.gen.emit.ada.declarations import PackageRenaming, Unit
@@ -36,7 +36,7 @@ def counts_by_itself(system: System, of_type: Type) -> bool:
     return of_type.unit is None or library_of_unit(system, of_type.unit) is None
 
 
-def _renamed(system: System) -> dict[DottedName, DottedName]:
+def renamed_packages(system: System) -> dict[DottedName, DottedName]:
     """Packages of the components in use that a library declares, with what they rename."""
     used = {instance.component.name: instance.component for instance in system.instances}
     found = ((c, system.library_of(c)) for c in used.values())
@@ -47,15 +47,14 @@ def _renamed(system: System) -> dict[DottedName, DottedName]:
     }
 
 
-def library_units(system: System, header: str) -> Iterator[Unit]:
+def library_units(renamed: Mapping[DottedName, DottedName], header: str) -> Iterator[Unit]:
     """A unit for each component in use that a library declares: its package, renamed."""
-    for name, there in _renamed(system).items():
+    for name, there in renamed.items():
         yield Unit(header, (there,), PackageRenaming(name, there))
 
 
-def in_libraries(unit: Unit, system: System) -> Unit:
+def in_libraries(unit: Unit, renamed: Mapping[DottedName, DottedName]) -> Unit:
     """The unit with children of a library's component named as the library has them."""
-    renamed = _renamed(system) if system.libraries else {}
     found: dict[DottedName, None] = {}
     for name in unit.withs:
         package = DottedName(name.parts[:2])
@@ -69,9 +68,8 @@ def in_libraries(unit: Unit, system: System) -> Unit:
     return replace(unit, withs=tuple(withs))
 
 
-def only_prefixes(unit: Unit, system: System) -> frozenset[DottedName]:
+def only_prefixes(unit: Unit, renamed: Mapping[DottedName, DottedName]) -> frozenset[DottedName]:
     """Renamed packages in the context of a unit that only stand before the names of children."""
-    renamed = _renamed(system) if system.libraries else {}
     idle = set(renamed) & set(unit.withs)
     for package in tuple(idle):
         children = {n.parts[2] for n in unit.withs if n.parts[:2] == renamed[package].parts}
