@@ -177,13 +177,17 @@ def _written(folder: Path) -> list[checking.Checked]:
 
 
 def record_names(name: str, folder: Path) -> tuple[str, ...]:
-    """The records of the model in the folder: one, or one for each deployment and node."""
+    """The records of the model in the folder: two, or two for each deployment and node.
+
+    The second of a program shows termination. A library, where nothing runs, has one record.
+    """
     generated = folder / "generated"
     homes = sorted(project.parent.relative_to(generated) for project in generated.rglob("*.gpr"))
     own = tuple("-".join((name, *home.parts)) for home in homes)
     parts = {p.parent for p in folder.glob("*/generated/*-*.ads") if p.parent.parent.name != "user"}
     libraries = sorted(project.stem for home in parts for project in home.glob("*.gpr"))
-    return (*own, *(f"{name}-{library}" for library in libraries))
+    both = (record for one in own for record in (one, f"{one}-{proving.TERMINATION}"))
+    return (*both, *(f"{name}-{library}" for library in libraries))
 
 
 def _floats() -> Target:
@@ -277,6 +281,9 @@ def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[T
             parts = (name, checked.system.deployment, program.folder)
             target = "-".join(part for part in parts if part)
             yield Target(target, program.proof(driver, warnings=warnings), folder)
+            ending = program.termination(driver)
+            if ending is not None:
+                yield Target(f"{target}-{proving.TERMINATION}", ending)
 
 
 def prove(names: Sequence[str]) -> bool:

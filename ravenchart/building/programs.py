@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,13 +18,15 @@ from ravenchart.failures import Refused
 from ravenchart.gen.derive.completion import programs
 from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
 from ravenchart.gen.emit.commands.registers import HARDWARE, types_with_registers
+from ravenchart.gen.emit.nodes.termination import ending_claims, termination_files
 from ravenchart.gen.emit.program import (
     folder_of,
     source_folders,
 )
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT, work
-from ravenchart.proof.proving import ProofTask
+from ravenchart.proof import ages
+from ravenchart.proof.proving import TERMINATION, ProofTask
 from ravenchart.stacks.report import Memory
 
 from . import images, stacks, targets
@@ -268,6 +271,40 @@ class Program:
             warnings=warnings,
             whole=whole,
             units=self.proved_units(),
+        )
+
+    def termination(self, driver: str) -> ProofTask | None:
+        """The run of gnatprove on the claims that each execution ends; None where nothing runs.
+
+        Writes the claims, in the words of the gnatprove on PATH.
+        """
+        if not ending_claims(self.part):
+            return None
+        main = self.proof(driver)
+        home = self.home(driver) / TERMINATION
+        declared = ages.age_of(ages.version()).termination
+        project = str(self.project.resolve())
+        files = termination_files(self.part, project, declared)
+        shutil.rmtree(home, ignore_errors=True)
+        home.mkdir(parents=True)
+        for name, text in files.items():
+            (home / name).write_text(text, encoding="utf-8")
+        bodies = tuple(name for name in files if name.endswith(".adb"))
+        libraries = (self.home(driver) / one.stem for one in self.checked.libraries)
+        return ProofTask(
+            home / f"{TERMINATION}.gpr",
+            main.scenario,
+            (
+                home / "objects" / "gnatprove",
+                *main.results,
+                *(one / "checks" / "gnatprove" for one in libraries),
+                work() / "obj" / f"checks-{driver}" / "gnatprove",
+            ),
+            (home, *main.sources),
+            warnings=main.warnings,
+            units=bodies,
+            shows=TERMINATION,
+            made=home,
         )
 
     def _user_folders(self) -> tuple[Path, ...]:

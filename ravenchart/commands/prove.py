@@ -10,7 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ravenchart.building import programs
+from ravenchart.evidence.records import of_termination
 from ravenchart.failures import OK, WRONG
+from ravenchart.gen.emit.nodes.termination import ending_claims
 from ravenchart.proof import outside_spark, proving, unproved, verdicts
 from ravenchart.proof.spark_results import Outside
 from ravenchart.terminal import stages
@@ -66,30 +68,24 @@ def execute(options: argparse.Namespace) -> int:
     clean = True
     outside: dict[Outside, None] = {}
     for one in made:
-        task = one.proof(driver, whole=options.whole)
-        open_: tuple[unproved.UnprovedCheck, ...] = ()
         name = one.node or one.checked.system.name
-        with stages(f"prove {name}") as tell:
-            try:
-                proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
-            except proving.NotProved as left:
-                proof = left.proof
-                tell("looking for values that fail")
-                text = proving.examples(task, proof) or str(left)
-                places = [path for path in task.sources if path.is_dir()]
-                found = proof.results.open
-                home = one.checked
-                open_ = unproved.findings(text, found, home.system, home.folder, places)
-        for finding in open_:
+        proof, open_ = _proof(one, driver, options)
+        ending, left = _ending(one, driver, options)
+        for finding in (*open_, *left):
             say(options.answer, "\n".join(finding.lines()))
-        answer.programs.append(_proved(name, proof, open_))
+        answer.programs.append(_proved(name, proof, ending, (*open_, *left)))
         where = f" on {one.node}" if one in nodes and len(nodes) > 1 else ""
         print(f"{one.checked.system.name}{where}: {proof.summary()}", flush=True)
-        clean = clean and proof.clean
+        if ending is not None:
+            print(f"{one.checked.system.name}{where}: {_told(one, ending)}", flush=True)
+        clean = clean and proof.clean and (ending is None or ending.clean)
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
             record = record_of(options.record, name, several=len(made) > 1)
             record.write_text(proving.record_text(proof), encoding="utf-8")
+            if ending is not None:
+                beside = of_termination(record)
+                beside.write_text(proving.record_text(ending), encoding="utf-8")
     for line in outside_spark.lines(tuple(outside), reasons):
         if line.startswith("error"):
             say(options.answer, line)
@@ -98,12 +94,57 @@ def execute(options: argparse.Namespace) -> int:
     return OK if clean and outside_spark.agree(tuple(outside), reasons) else WRONG
 
 
+def _proof(
+    one: programs.Program, driver: str, options: argparse.Namespace
+) -> tuple[proving.Proof, tuple[unproved.UnprovedCheck, ...]]:
+    """The proof of a program, and what is left open."""
+    task = one.proof(driver, whole=options.whole)
+    with stages(f"prove {one.node or one.checked.system.name}") as tell:
+        try:
+            proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
+        except proving.NotProved as left:
+            tell("looking for values that fail")
+            text = proving.examples(task, left.proof) or str(left)
+            places = [path for path in task.sources if path.is_dir()]
+            found, home = left.proof.results.open, one.checked
+            return left.proof, unproved.findings(text, found, home.system, home.folder, places)
+    return proof, ()
+
+
+def _ending(
+    one: programs.Program, driver: str, options: argparse.Namespace
+) -> tuple[proving.Proof | None, tuple[unproved.UnprovedCheck, ...]]:
+    """The proof that each execution ends, and what may not; None where nothing runs."""
+    task = one.termination(driver)
+    if task is None:
+        return None, ()
+    with stages(f"prove {one.node or one.checked.system.name}") as tell:
+        try:
+            proof = proving.prove(task, fresh=options.fresh, memcached=options.cache, tell=tell)
+        except proving.NotProved as left:
+            claims = ending_claims(one.part)
+            return left.proof, unproved.endless(left.proof.results.open, claims)
+    return proof, ()
+
+
 def record_of(path: Path, node: str, *, several: bool) -> Path:
     """Where the record of a node is written: with ``several`` each has a file of its own."""
     return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
 
 
-def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.UnprovedCheck]) -> Proved:
+def _told(one: programs.Program, ending: proving.Proof) -> str:
+    """Whether each execution ends, in the one line of it."""
+    rows = len(one.part.slots)
+    what = "executions of 1 row end" if rows == 1 else f"executions of {rows} rows end"
+    return f"all {what}: {'proved' if ending.clean else 'NOT PROVED'}"
+
+
+def _proved(
+    node: str,
+    proof: proving.Proof,
+    ending: proving.Proof | None,
+    left: Sequence[unproved.UnprovedCheck],
+) -> Proved:
     found = proof.results
     return Proved(
         node,
@@ -127,4 +168,5 @@ def _proved(node: str, proof: proving.Proof, left: Sequence[unproved.UnprovedChe
         ],
         proof.clean,
         proof.cached,
+        ending is None or ending.clean,
     )

@@ -61,6 +61,8 @@ class Proved(Described):
     """Whether everything is proved, and nothing justified or assumed."""
     cached: bool
     """Whether the results are those of an earlier run on the same content."""
+    ends: bool
+    """Whether each execution of a row is proved to end; true of a library, which runs nothing."""
 
 
 @dataclass(slots=True)

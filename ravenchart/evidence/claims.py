@@ -28,6 +28,7 @@ from . import records
 from .bounds import bounds
 from .claim import NO_RECORD, Claim, ClaimKind, Pairs, Shown, own_tool, verdict_of
 from .coverage import coverage
+from .endings import endings
 from .facts import Facts, NodeFacts
 from .memory import stacks
 from .protocols import protocols
@@ -40,6 +41,7 @@ def claims(facts: Facts) -> tuple[Claim, ...]:
     return (
         *(_translation(facts, node) for node in facts.programs),
         *(_program(facts, node) for node in facts.programs),
+        *endings(facts),
         *_charts(facts),
         *_frames(facts),
         *_behaviour(facts),

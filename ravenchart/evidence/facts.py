@@ -24,6 +24,7 @@ from ravenchart.gen.files.links import Link, links
 from ravenchart.gen.files.load import read_file, read_model
 from ravenchart.paths import ROOT
 from ravenchart.proof import outside_spark
+from ravenchart.proof.proving import TERMINATION
 from ravenchart.stacks.report import Memory
 from ravenchart.tools.kept import file_digest
 
@@ -44,6 +45,8 @@ class NodeFacts:
 
     program: Program
     record: BelievedRecord | None
+    ending: BelievedRecord | None
+    """The record that each execution ends."""
     differences: tuple[str, ...]
     files: tuple[tuple[str, str], ...]
     """(name, SHA-256) of each of its files on disk."""
@@ -168,10 +171,13 @@ def _node(
         path = given[0]  # of another place, or damaged: its problems say so
     if path is None:
         path = records.of_example(program)
-    record = None
+    record = ending = None
     if path is not None:
         record = records.read(path, path.name, folder)
         record = records.judged(record, records.missing(program, record, driver))
+        beside = records.of_termination(path)
+        if beside.is_file():
+            ending = records.read(beside, beside.name, folder, TERMINATION)
     within = f"{program.folder}/" if program.folder else ""
     wanted = {
         name.removeprefix(within): text
@@ -191,7 +197,7 @@ def _node(
         elif files and path.read_bytes() != wanted[name].encode("utf-8"):
             differences.append(f"{name} is not what the model gives")
     pairs = tuple((records.shown(path, folder), file_digest(path)) for path in there.values())
-    return NodeFacts(program, record, tuple(differences), pairs)
+    return NodeFacts(program, record, ending, tuple(differences), pairs)
 
 
 def _runtime(

@@ -19,6 +19,7 @@ from ravenchart.gen.emit.commands.registers import HARDWARE
 from ravenchart.gen.emit.program import source_folders
 from ravenchart.paths import ROOT
 from ravenchart.proof.ages import AGES
+from ravenchart.proof.proving import TERMINATION
 from ravenchart.tools.kept import file_digest
 
 RECORDS = ROOT / "proofs" / "records"
@@ -70,8 +71,11 @@ def shown(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(whole, os.path.abspath(folder))).as_posix()
 
 
-def read(path: Path, name: str, folder: Path) -> BelievedRecord:
-    """A record; of one that cannot be read, or says too little, the problems say so."""
+def read(path: Path, name: str, folder: Path, shows: str = "") -> BelievedRecord:
+    """A record; of one that cannot be read, says too little or ``shows`` less, the problems say so.
+
+    Records of all checks of a program show "".
+    """
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
         checks, proved = _count(found, "checks"), _count(found, "proved")
@@ -83,6 +87,8 @@ def read(path: Path, name: str, folder: Path) -> BelievedRecord:
             for key, value in found["entities"].items()
         )
         tool = str(found.get("tool") or UNKNOWN_TOOL)
+        if found.get("shows", "") != shows:
+            raise ValueError("shows")
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         problem = f"the record {name} cannot be read as a proof record"
         return BelievedRecord(name, UNKNOWN_TOOL, 0, 0, (), (), (), (problem,), "")
@@ -158,11 +164,19 @@ def own_sources(program: Program) -> tuple[Path, ...]:
     return (*made, *bodies)
 
 
+def of_termination(path: Path) -> Path:
+    """The record of termination that lies beside the record of a program."""
+    return path.with_name(f"{path.stem}-{TERMINATION}{path.suffix}")
+
+
 def belongs(path: Path, program: Program) -> bool:
     """Whether a record is that of a program: it was made of its project file."""
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8"))["sources"]
+        record = tomllib.loads(path.read_text(encoding="utf-8"))
+        found = record["sources"]
     except (OSError, ValueError, KeyError):
+        return False
+    if "shows" in record:
         return False
     wanted = os.path.abspath(program.project)
     return any(os.path.abspath(ROOT / str(name)) == wanted for name in found)

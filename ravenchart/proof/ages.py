@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from ravenchart.gen.emit.nodes.termination import Declared
 from ravenchart.tools import toolchain
 
 _PART = re.compile(r"\b(Why3|CVC4|cvc5|Z3|Alt-Ergo)(?: for gnatprove)? version v?(\d[^\s,]*)")
@@ -28,10 +29,14 @@ class Age:
     name: str
     switches: tuple[str, ...]
     """Two provers; a check that is not proved is an error."""
+    termination: Declared
+    """How a subprogram is declared to terminate."""
 
 
-GNAT_12 = Age("gnat-12", ("--prover=z3,cvc4", "--checks-as-errors"))
-GNAT_14 = Age("gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30"))
+GNAT_12 = Age("gnat-12", ("--prover=z3,cvc4", "--checks-as-errors"), Declared.ANNOTATION)
+GNAT_14 = Age(
+    "gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30"), Declared.ASPECT
+)
 """A few checks take its provers more than the 10 s of the project files."""
 AGES = (GNAT_14, GNAT_12)
 """The one that users get now comes first."""

@@ -27,6 +27,9 @@ from . import earlier as proof_cache
 from .spark_results import Outside, Results
 from .verdicts import Memcached
 
+TERMINATION = "termination"
+"""What a record shows that every execution ends. It rests on the bodies of all that runs."""
+
 
 @dataclass(frozen=True, slots=True)
 class ProofTask:
@@ -44,6 +47,10 @@ class ProofTask:
     """Prove the projects that this one uses again."""
     units: tuple[str, ...] = ()
     """The source files to prove, when not all."""
+    shows: str = ""
+    """What its record shows; empty for all checks of a project."""
+    made: Path | None = None
+    """A folder of sources that were made for this run alone: no record names them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +64,8 @@ class Proof:
     """gnatprove and its provers with their versions (`ages.tool_text`)."""
     cached: bool = field(default=False, compare=False)
     """Whether the results are those of an earlier run on the same content."""
+    shows: str = ""
+    """As in its task."""
 
     @property
     def clean(self) -> bool:
@@ -113,7 +122,8 @@ def prove(
                 _run(task, server, tell)
             except ToolFailed as problem:
                 failed = problem
-        results = spark_results.read_results(task.results, task.units)
+        with_bodies = task.shows == TERMINATION
+        results = spark_results.read_results(task.results, task.units, with_bodies=with_bodies)
         edited = sorted(path for path, _ in _inputs(task.sources).items() ^ inputs.items())
         if edited:
             raise ToolFailed(f"{edited[0]}: error: it was changed during the proof; prove again")
@@ -121,8 +131,10 @@ def prove(
             proof_cache.store(key, results)
     results = replace(results, outside=_with_code(results.outside, inputs))
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
+    if task.made is not None:
+        read = {path: d for path, d in read.items() if path.parent != task.made.resolve()}
     sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
-    proof = Proof(results, sources, ages.tool_text(version), cached)
+    proof = Proof(results, sources, ages.tool_text(version), cached, task.shows)
     if failed is not None:
         raise NotProved(str(failed), proof) if results.unproved else failed
     return proof
@@ -205,6 +217,7 @@ def record_text(proof: Proof) -> str:
         f"assumed = {found.assumed}",
         f"outside = {json.dumps([o.name for o in found.outside])}",
         f"tool = {json.dumps(proof.tool)}",
+        *([f"shows = {json.dumps(proof.shows)}"] if proof.shows else []),
         "",
         "[sources]",
         *(f'"{path}" = "{digest}"' for path, digest in proof.sources),

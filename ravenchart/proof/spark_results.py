@@ -73,10 +73,17 @@ class Results:
         return len(self.open)
 
 
-def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Results:
+TERMINATION = "SUBPROGRAM_TERMINATION"
+"""gnatprove's name of the check that a subprogram ends; flow analysis proves it."""
+
+
+def read_results(
+    folders: Sequence[Path], analysed: Sequence[str] = (), *, with_bodies: bool = False
+) -> Results:
     """The results in ``folders``; nothing of another run may lie there.
 
-    ``analysed`` are the source files that gnatprove was asked for, if not for all.
+    ``analysed`` are the source files that gnatprove was asked for, if not for all. The results
+    rest on the specs of what these use, and ``with_bodies`` on the bodies too.
     """
     found = [(path.stem, json.loads(path.read_text("utf-8"))) for path in _files(folders, "spark")]
     units = [
@@ -95,7 +102,8 @@ def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Resul
                 justified += 1
             elif check["severity"] != "info":
                 unproved.append(_open(unit, check))
-        for check in unit.get("proof", ()):
+        ended = (one for one in unit.get("flow", ()) if one["rule"] == TERMINATION)
+        for check in (*unit.get("proof", ()), *ended):
             name = entity_of(unit, check["entity"])["name"]
             count, provers = tallies.get(name, (0, set()))
             provers |= set(check.get("stats", ()))
@@ -109,7 +117,8 @@ def read_results(folders: Sequence[Path], analysed: Sequence[str] = ()) -> Resul
         *(o for _, unit in found for o in _outside(unit)),
         *(Outside(u.name, u.first) for u in units if not u.generic and u.stem not in seen),
     }
-    files = frozenset(name for unit in units for name in unit.sources)
+    read = _with_used(units, folders) if with_bodies else units
+    files = frozenset(name for unit in read for name in unit.sources)
     ordered = tuple(sorted(outside, key=lambda o: (o.name, o.location)))
     places = tuple(sorted(unproved, key=lambda o: (o.file, o.line, o.column, o.rule)))
     return Results(checks, justified, places, assumed, ordered, files, entities)
@@ -184,6 +193,21 @@ class _Unit:
     files: frozenset[str]
     generic: bool
     sources: tuple[str, ...]
+    uses: tuple[str, ...]
+    """The stems of the units that it names."""
+
+
+def _with_used(units: Sequence[_Unit], folders: Sequence[Path]) -> list[_Unit]:
+    """The units, and all that they use, directly or not."""
+    there = {path.stem: path for path in _files(folders, "ali")}
+    found = {unit.stem: unit for unit in units}
+    left = [*units]
+    while left:
+        for stem in left.pop().uses:
+            if stem in there and stem not in found:
+                found[stem] = _unit(there[stem])
+                left.append(found[stem])
+    return [*found.values()]
 
 
 def _unit(path: Path) -> _Unit:
@@ -192,4 +216,5 @@ def _unit(path: Path) -> _Unit:
     sources = tuple(words[1] for words in lines if words[0] == "D" and "/" not in words[1])
     name = units[0][1].partition("%")[0]
     files = frozenset(words[2] for words in units)
-    return _Unit(path.stem, name, units[0][2], files, "GE" in units[0], sources)
+    uses = tuple(words[3].removesuffix(".ali") for words in lines if words[0] == "W" and words[3:])
+    return _Unit(path.stem, name, units[0][2], files, "GE" in units[0], sources, uses)

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ravenchart.gen.emit.nodes.termination import EndingClaim
 from ravenchart.gen.language.names import path_name
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -45,6 +46,11 @@ HELPS: Mapping[str, str] = {
     "terminat": "end every loop after a number of iterations that is known before",
 }
 """By a word of the message, in this order."""
+ENDS = (
+    "give each `while` loop and each `loop` below it a `pragma Loop_Variant`, and each recursion a "
+    "Subprogram_Variant; a `for` loop ends by itself"
+)
+"""For what may not end."""
 OTHERWISE = "simplify the expression, or test before what the check needs"
 IN_GENERATED = (
     "bound the value in the model: a narrower range, `min` and `max`, or a guard; "
@@ -100,6 +106,30 @@ def findings(
     return tuple(
         _finding(one, texts.get((one.file, one.line, one.column), ""), system, folder, places)
         for one in unproved
+    )
+
+
+def endless(unproved: Sequence[Open], claims: Sequence[EndingClaim]) -> tuple[UnprovedCheck, ...]:
+    """A finding for each row of a processor that may not end.
+
+    Where each of its rows ends, the processor itself is what does not.
+    """
+    open_ = {one.entity.lower() for one in unproved}
+    left = {one.element: one.origin for one in claims if one.entity.lower() in open_}
+    rows = [name for name in left if "." in name]
+    return tuple(
+        UnprovedCheck(
+            left[name].file,
+            left[name].line,
+            left[name].column,
+            f"an execution of {name} may never end",
+            "",
+            "",
+            name,
+            None,
+            ENDS,
+        )
+        for name in rows or left
     )
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from ravenchart.building import checking, generation, programs
 from ravenchart.evidence import facts, folder, lists, records
 from ravenchart.evidence.folder import FolderTexts
+from ravenchart.gen.emit.nodes.termination import ending_claims
 from ravenchart.gen.explanations import edited
 from ravenchart.paths import ROOT
 from ravenchart.proof import proving
@@ -83,20 +84,25 @@ def record(home: Path, units: Sequence[str] = UNITS, outside: Iterable[str] = ()
     driver = ROOT / "hw_can" / "drivers" / "slcan" / records.DRIVER
     sources = [*records.own_sources(program), program.project, driver]
     (home / "proof.toml").write_text(_text(sources, units, outside), encoding="utf-8")
+    ends = [claim.entity for claim in ending_claims(program.part)]
+    text = _text(sources, ends, (), proving.TERMINATION)
+    records.of_termination(home / "proof.toml").write_text(text, encoding="utf-8")
 
 
-def _text(sources: Iterable[Path], units: Sequence[str], outside: Iterable[str]) -> str:
+def _text(
+    sources: Iterable[Path], units: Sequence[str], outside: Iterable[str], shows: str = ""
+) -> str:
     entities = tuple(Entity(unit, 2, ("Z3",)) for unit in units)
     found = tuple(Outside(name, "x.ads:1") for name in outside)
     results = Results(2 * len(units), 0, (), 0, found, frozenset(), entities)
     pairs = tuple((str(path), file_digest(path)) for path in sources)
-    return proving.record_text(proving.Proof(results, pairs, "GNATprove 1.0"))
+    return proving.record_text(proving.Proof(results, pairs, "GNATprove 1.0", shows=shows))
 
 
 def copy(home: Path, place: Path) -> Path:
     """All of it in another place, with the record of that place."""
     shutil.copytree(home, place)
-    for path in (place / "proof.toml", *(place / "records").rglob("*.toml")):
+    for path in (*place.glob("proof*.toml"), *(place / "records").rglob("*.toml")):
         path.write_text(path.read_text().replace(str(home), str(place)), encoding="utf-8")
     return place
 

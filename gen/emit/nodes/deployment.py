@@ -44,7 +44,7 @@ from ravenchart.gen.emit.ada.naming import (
     root_package,
     row_name,
 )
-from ravenchart.gen.emit.ada.statements import Case, Comment, IfStatement, Pragma, Stmt, do
+from ravenchart.gen.emit.ada.statements import Case, Comment, Do, IfStatement, Pragma, Stmt, do
 from ravenchart.gen.emit.buses.packages import emit_bus
 from ravenchart.gen.emit.certificate.certified import (
     CERTIFICATE,
@@ -268,7 +268,7 @@ def _processor(system: System, processor: Processor, header: str) -> list[Unit]:
         withs.add(ref(root, _wait(processor).parent))
     context = fault_units(root)
     context |= {_ARRIVALS, _SOURCES} if line is not None else set()
-    context |= {_owner_unit(system, s) for s in processor.slots}
+    context |= {row_unit(system, s) for s in processor.slots}
     context |= {ref(root, ada_case(i)) for i, _ in processor.raises}
     context |= {ref(root, ada_case(system.instance(i).component.name)) for i, _ in processor.raises}
     if traced(system):
@@ -391,8 +391,15 @@ def _slot(processor: Processor, slot: Slot) -> Expr:
     return record(facts)
 
 
-def _owner_unit(system: System, slot: Slot) -> DottedName:
+def row_unit(system: System, slot: Slot) -> DottedName:
+    """The package with the procedure of a row."""
     return ref(root_package(system), _package(slot))
+
+
+def row_call(slot: Slot) -> Do:
+    """One execution of a row."""
+    name = slot.work.value if slot.of_bus else slot.name
+    return do(ref(_package(slot), f"Run_{ada_case(name)}"), ref("Executed"))
 
 
 def _package(slot: Slot) -> DottedName:
@@ -402,12 +409,7 @@ def _package(slot: Slot) -> DottedName:
 
 
 def _processor_body(system: System, processor: Processor) -> tuple[Decl, ...]:
-    rows = []
-    for slot in processor.slots:
-        name = slot.work.value if slot.of_bus else slot.name
-        rows.append(
-            (row_name(slot), (do(ref(_package(slot), f"Run_{ada_case(name)}"), ref("Executed")),))
-        )
+    rows = [(row_name(slot), (row_call(slot),)) for slot in processor.slots]
     execute: list[Stmt] = []
     if traced(system):
         execute.append(

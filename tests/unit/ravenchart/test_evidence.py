@@ -32,7 +32,9 @@ TIMED = (
     *("chain-reaction", "queues"),
 )
 USERS = ("activities-Valve.activities",)
+ENDS = ("termination",)
 GOOD = ("met", "partly")
+ENDING = "proof-termination.toml"
 RUNTIME_RECORD = "records/gnat-12/runtime-slcan.toml"
 
 
@@ -56,7 +58,7 @@ def test_everything_that_is_shown_is_met(home: Path) -> None:
         "stack-work": "user's",
     }
     assert found.findings == ()
-    assert {*PROVED, *TIMED, *USERS} <= verdicts(found).keys()
+    assert {*PROVED, *TIMED, *USERS, *ENDS} <= verdicts(found).keys()
 
 
 # --- Sabotage --------------------------------------------------------------------
@@ -73,9 +75,13 @@ def _record(old: str, new: str) -> Spoil:
     return lambda home: _edit(home / "proof.toml", old, new)
 
 
-def _without(pattern: str) -> Spoil:
+def _ending(old: str, new: str) -> Spoil:
+    return lambda home: _edit(home / ENDING, old, new)
+
+
+def _without(pattern: str, name: str = "proof.toml") -> Spoil:
     def spoil(home: Path) -> None:
-        path = home / "proof.toml"
+        path = home / name
         lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
         kept = [line for line in lines if not re.search(pattern, line)]
         assert len(kept) < len(lines)
@@ -95,7 +101,7 @@ def _cut(home: Path) -> None:
 
 ALL = (*PROVED, *USERS, *TIMED)
 CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
-    "model: a wcet": (_model("wcet: 30 us", "wcet: 31 us"), ("generated", *ALL)),
+    "model: a wcet": (_model("wcet: 30 us", "wcet: 31 us"), ("generated", *ALL, *ENDS)),
     "model: a time-out": (_model("after: 1 s", "after: 2 s"), ("generated", *ALL)),
     "model: a missed deadline": (
         _model("wcet: 30 us", "wcet: 9999 us"),
@@ -107,14 +113,14 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     ),
     "model: a comment": (_model("system:", "# another text\nsystem:"), ("generated", *ALL)),
     "code: a chart": (
-        lambda home: _append(home / f"{GENERATED}-valve-motion.adb"), ("generated", *ALL),
+        lambda home: _append(home / f"{GENERATED}-valve-motion.adb"), ("generated", *ALL, *ENDS),
     ),
     "code: a codec": (lambda home: _append(home / f"{GENERATED}-codecs.ads"), ("generated", *ALL)),
     "code: the project": (lambda home: _append(home / f"{GENERATED}.gpr"), ("generated", *ALL)),
     "code: a file is gone": (
         lambda home: (home / f"{GENERATED}-codecs.adb").unlink(), ("generated", *ALL),
     ),
-    "code: a file too many": (_foreign_body, ("generated", *ALL)),
+    "code: a file too many": (_foreign_body, ("generated", *ALL, *ENDS)),
     "certificate": (
         lambda home: _append(home / f"{GENERATED}-timing_certificate.ads"),
         ("generated", *TIMED),
@@ -124,7 +130,7 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
         ("generated", *PROVED),
     ),
     "user's body": (
-        lambda home: _append(home / "user/valve_house-valve-activities.adb"), (*ALL,),
+        lambda home: _append(home / "user/valve_house-valve-activities.adb"), (*ALL, *ENDS),
     ),
     "record: an unproved check": (_record("proved = 10", "proved = 9"), ALL),
     "record: more checks than proofs": (_record("checks = 10", "checks = 11"), ALL),
@@ -147,6 +153,16 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     ),
     "record: cut off": (_cut, ALL),
     "record: a number is text": (_record("checks = 10", 'checks = "10"'), ALL),
+    "termination: an unproved check": (_ending("proved = 18", "proved = 17"), ENDS),
+    "termination: a row is not in it": (_without(r"Of_Work\.Valve_1_Look", ENDING), ENDS),
+    "termination: the table is not in it": (_without(r"Of_Work\.Table", ENDING), ENDS),
+    "termination: a digest": (
+        lambda home: _edit(home / ENDING, _digest(home), "0" * 64), ENDS,
+    ),
+    "termination: the record of the program in its place": (
+        lambda home: (home / ENDING).write_bytes((home / "proof.toml").read_bytes()), ENDS,
+    ),
+    "termination: no record": (lambda home: (home / ENDING).unlink(), ENDS),
     "runtime: a source": (
         lambda home: _append(home / "runtime.ads"), ("runtime-loopback", "runtime-slcan"),
     ),
@@ -420,7 +436,7 @@ def test_an_earlier_folder_goes_when_the_model_has_errors(
 def test_the_command_says_what_is_not_shown(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["evidence", str(home / "model.yaml"), "--json"]) == 1
     result = json.loads(capsys.readouterr().out)["result"]
-    assert result["claims"]["not shown"] == 7
+    assert result["claims"]["not shown"] == 8
     words = ["--record", str(home / "proof.toml"), "--tests", str(home / "results.xml")]
     call = ["requirements", str(home / "model.yaml"), str(home / "requirements.csv"), *words]
     assert main(call) == 0
