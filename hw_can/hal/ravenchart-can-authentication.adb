@@ -15,20 +15,21 @@ is
    --------------
 
    function Input_Of
-     (F : Any_Frames.Any_Frame; S : Setting; Value : Freshness)
+     (F : Any_Frames.Any_Frame; S : Setting; Value : Freshness_Value)
       return Mac_Input
    is
       Data   : constant Data_Size := Data_Length (S);
       Result : Mac_Input := (Length => Data + 10, Bytes => (others => 0));
    begin
-      Result.Bytes (0) := Octet (Freshness (S.Data_Id), 1);
-      Result.Bytes (1) := Octet (Freshness (S.Data_Id), 0);
+      Result.Bytes (0) := Octet (Freshness_Value (S.Data_Id), 1);
+      Result.Bytes (1) := Octet (Freshness_Value (S.Data_Id), 0);
       for I in 0 .. Data - 1 loop
          Result.Bytes (I + 2) := Any_Frames.Byte (F, I);
          pragma Loop_Invariant (Result.Length = Data + 10);
          pragma Loop_Invariant
-           (Result.Bytes (0) = Octet (Freshness (S.Data_Id), 1)
-            and then Result.Bytes (1) = Octet (Freshness (S.Data_Id), 0));
+           (Result.Bytes (0) = Octet (Freshness_Value (S.Data_Id), 1)
+            and then Result.Bytes (1)
+              = Octet (Freshness_Value (S.Data_Id), 0));
          pragma Loop_Invariant
            (for all J in 2 .. Input_Index'Last =>
               Result.Bytes (J)
@@ -52,7 +53,8 @@ is
    -- Begin_After --
    -----------------
 
-   procedure Begin_After (State : in out Freshness_State; Last : Freshness)
+   procedure Begin_After
+     (State : in out Freshness_State; Last : Freshness_Value)
    is
    begin
       if not State.Is_Started then
@@ -66,10 +68,10 @@ is
 
    procedure Take
      (State : in out Freshness_State;
-      Value : out Freshness;
+      Value : out Freshness_Value;
       Taken : out Boolean) is
    begin
-      Taken := State.Last < Freshness'Last;
+      Taken := State.Last < Freshness_Value'Last;
       if Taken then
          State.Last := State.Last + 1;
       end if;
@@ -83,7 +85,7 @@ is
    procedure Seal
      (F      : in out Any_Frames.Any_Frame;
       S      : Setting;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Answer : Mac_Answer)
    is
       Old   : constant Any_Frames.Any_Frame := F with Ghost;
@@ -116,7 +118,7 @@ is
         (for all K in Octet_Index =>
            Shown_Octet (F, S, K)
            = (if K < S.Freshness_Bytes
-              then Freshness (Octet (Value, K))
+              then Freshness_Value (Octet (Value, K))
               else 0));
       pragma Assert (Shown (F, S) = (Value and Mask (S)));
       pragma Assert
@@ -133,11 +135,11 @@ is
      (State  : Freshness_State;
       S      : Setting;
       F      : Any_Frames.Any_Frame;
-      Value  : out Freshness;
+      Value  : out Freshness_Value;
       Result : out Status)
    is
-      Low  : constant Freshness := Shown (F, S);
-      High : constant Freshness := State.Last and not Mask (S);
+      Low  : constant Freshness_Value := Shown (F, S);
+      High : constant Freshness_Value := State.Last and not Mask (S);
    begin
       Value  := State.Last;
       Result := Not_Fresh;
@@ -182,7 +184,7 @@ is
      (State  : in out Freshness_State;
       S      : Setting;
       F      : Any_Frames.Any_Frame;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Answer : Mac_Answer;
       Result : out Status) is
    begin
@@ -204,8 +206,8 @@ is
      (State : Freshness_State;
       S     : Setting;
       F     : Any_Frames.Any_Frame;
-      Value : Freshness;
-      Other : Freshness)
+      Value : Freshness_Value;
+      Other : Freshness_Value)
    is null;
 
 end Ravenchart.Can.Authentication;

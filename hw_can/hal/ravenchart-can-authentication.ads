@@ -30,7 +30,7 @@ is
    use type Fd_Frames.Bit_Rate_Use;
    use type Interfaces.Unsigned_8;
 
-   subtype Freshness is Interfaces.Unsigned_64;
+   subtype Freshness_Value is Interfaces.Unsigned_64;
    --  The number of a frame under its key and data identifier.
 
    subtype Freshness_Size is Positive range 1 .. 8;
@@ -92,7 +92,7 @@ is
    with Global => null;
    --  Is it a CAN FD frame of this length?
 
-   function Mask (S : Setting) return Freshness
+   function Mask (S : Setting) return Freshness_Value
    is (case S.Freshness_Bytes is
          when 1 => 16#FF#,
          when 2 => 16#FFFF#,
@@ -108,7 +108,7 @@ is
    subtype Octet_Index is Natural range 0 .. 7;
 
    function Octet
-     (Value : Freshness; K : Octet_Index) return Interfaces.Unsigned_8
+     (Value : Freshness_Value; K : Octet_Index) return Interfaces.Unsigned_8
    is (Interfaces.Unsigned_8
          (Interfaces.Shift_Right (Value, 8 * K) and 16#FF#))
    with Global => null;
@@ -116,16 +116,17 @@ is
 
    function Shown_Octet
      (F : Any_Frames.Any_Frame; S : Setting; K : Octet_Index)
-      return Freshness
+      return Freshness_Value
    is (if K < S.Freshness_Bytes
-       then Freshness (Any_Frames.Byte (F, S.Length - S.Mac_Bytes - 1 - K))
+       then Freshness_Value
+              (Any_Frames.Byte (F, S.Length - S.Mac_Bytes - 1 - K))
        else 0)
    with Global => null;
    --  One byte of the freshness value in the frame; 0 for a byte that is not
    --  there.
 
    function Shown
-     (F : Any_Frames.Any_Frame; S : Setting) return Freshness
+     (F : Any_Frames.Any_Frame; S : Setting) return Freshness_Value
    is (Shown_Octet (F, S, 0)
        or Interfaces.Shift_Left (Shown_Octet (F, S, 1), 8)
        or Interfaces.Shift_Left (Shown_Octet (F, S, 2), 16)
@@ -146,14 +147,16 @@ is
    --  Does F end with the first bytes of this MAC?
 
    function Input_Of
-     (F : Any_Frames.Any_Frame; S : Setting; Value : Freshness)
+     (F : Any_Frames.Any_Frame; S : Setting; Value : Freshness_Value)
       return Mac_Input
    with
      Global => null,
      Post   =>
        Input_Of'Result.Length = Data_Length (S) + 10
-       and then Input_Of'Result.Bytes (0) = Octet (Freshness (S.Data_Id), 1)
-       and then Input_Of'Result.Bytes (1) = Octet (Freshness (S.Data_Id), 0)
+       and then Input_Of'Result.Bytes (0)
+         = Octet (Freshness_Value (S.Data_Id), 1)
+       and then Input_Of'Result.Bytes (1)
+         = Octet (Freshness_Value (S.Data_Id), 0)
        and then
          (for all I in Input_Index =>
             (if I in 2 .. Data_Length (S) + 1
@@ -170,7 +173,7 @@ is
    function Is_Authentic
      (F      : Any_Frames.Any_Frame;
       S      : Setting;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Answer : Mac_Answer) return Boolean
    is (Is_Whole (F, S)
        and then Shown (F, S) = (Value and Mask (S))
@@ -204,11 +207,12 @@ is
 
    type Freshness_State is record
       Is_Started : Boolean := False;
-      Last       : Freshness := 0;
+      Last       : Freshness_Value := 0;
    end record;
    --  Last: the value of the last frame that was sent or verified.
 
-   procedure Begin_After (State : in out Freshness_State; Last : Freshness)
+   procedure Begin_After
+     (State : in out Freshness_State; Last : Freshness_Value)
    with
      Global => null,
      Post   =>
@@ -223,24 +227,24 @@ is
 
    procedure Take
      (State : in out Freshness_State;
-      Value : out Freshness;
+      Value : out Freshness_Value;
       Taken : out Boolean)
    with
      Global => null,
      Post   =>
        State.Is_Started = State'Old.Is_Started
        and then Value = State.Last
-       and then Taken = (State'Old.Last < Freshness'Last)
+       and then Taken = (State'Old.Last < Freshness_Value'Last)
        and then
          (if Taken
           then State.Last = State'Old.Last + 1
           else State = State'Old);
-   --  The value of the next frame. No value follows Freshness'Last.
+   --  The value of the next frame. No value follows Freshness_Value'Last.
 
    procedure Seal
      (F      : in out Any_Frames.Any_Frame;
       S      : Setting;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Answer : Mac_Answer)
    with
      Global => null,
@@ -267,7 +271,7 @@ is
      (State  : Freshness_State;
       S      : Setting;
       F      : Any_Frames.Any_Frame;
-      Value  : out Freshness;
+      Value  : out Freshness_Value;
       Result : out Status)
    with
      Global => null,
@@ -290,7 +294,7 @@ is
      (State  : in out Freshness_State;
       S      : Setting;
       F      : Any_Frames.Any_Frame;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Answer : Mac_Answer;
       Result : out Status)
    with
@@ -312,8 +316,8 @@ is
      (State : Freshness_State;
       S     : Setting;
       F     : Any_Frames.Any_Frame;
-      Value : Freshness;
-      Other : Freshness)
+      Value : Freshness_Value;
+      Other : Freshness_Value)
    with
      Ghost,
      Global => null,

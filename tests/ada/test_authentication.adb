@@ -58,7 +58,7 @@ procedure Test_Authentication is
    function Sealed
      (S      : Setting;
       Number : Natural;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Secret : Tag_Bytes := Key) return Any_Frame;
    --  A frame with that freshness value and its MAC.
 
@@ -97,7 +97,7 @@ procedure Test_Authentication is
    function Sealed
      (S      : Setting;
       Number : Natural;
-      Value  : Freshness;
+      Value  : Freshness_Value;
       Secret : Tag_Bytes := Key) return Any_Frame
    is
       Result : Any_Frame := Blank (S, Number);
@@ -118,7 +118,7 @@ procedure Test_Authentication is
       F      : Any_Frame;
       Result : out Status)
    is
-      Value : Freshness;
+      Value : Freshness_Value;
    begin
       Begin_After (State, 0);
       Reconstruct (State, S, F, Value, Result);
@@ -146,7 +146,7 @@ procedure Test_Authentication is
    procedure Check_Layout is
       S     : constant Setting := (16#A1B2#, 12, 2, 4);
       Frame : Any_Frame := Blank (S, 16#332211#);
-      Value : constant Freshness := 16#0102_0304_0506_0708#;
+      Value : constant Freshness_Value := 16#0102_0304_0506_0708#;
       Input : constant Mac_Input := Input_Of (Frame, S, Value);
       Tag   : Tag_Bytes := (others => 0);
    begin
@@ -179,14 +179,18 @@ procedure Test_Authentication is
 
    procedure Check_Freshness is
       procedure Hold
-        (Size : Freshness_Size; Last, Sent : Freshness; Expected : Status);
+        (Size       : Freshness_Size;
+         Last, Sent : Freshness_Value;
+         Expected   : Status);
 
       procedure Hold
-        (Size : Freshness_Size; Last, Sent : Freshness; Expected : Status)
+        (Size       : Freshness_Size;
+         Last, Sent : Freshness_Value;
+         Expected   : Status)
       is
          S      : constant Setting := (1, 24, Size, 4);
          State  : constant Freshness_State := (True, Last);
-         Value  : Freshness;
+         Value  : Freshness_Value;
          Result : Status;
       begin
          Reconstruct (State, S, Sealed (S, 7, Sent), Value, Result);
@@ -197,7 +201,7 @@ procedure Test_Authentication is
             and then (if Result = Unverified then Value = Sent));
       end Hold;
 
-      Most : constant Freshness := Freshness'Last;
+      Most : constant Freshness_Value := Freshness_Value'Last;
    begin
       Hold (1, 0, 1, Unverified);
       Hold (1, 0, 256, Unverified);
@@ -215,7 +219,7 @@ procedure Test_Authentication is
       Hold (1, Most, 5, Not_Fresh);
       declare
          State : Freshness_State;
-         Value : Freshness;
+         Value : Freshness_Value;
          Taken : Boolean;
       begin
          Begin_After (State, Most - 1);
@@ -274,7 +278,7 @@ procedure Test_Authentication is
       Before := State;
       declare
          Next  : constant Any_Frame := Sealed (S, 10, 65_543);
-         Value : Freshness;
+         Value : Freshness_Value;
       begin
          Reconstruct (State, S, Next, Value, Result);
          Verify
@@ -321,7 +325,7 @@ procedure Test_Authentication is
       ----------
 
       procedure Make is
-         Value : Freshness;
+         Value : Freshness_Value;
          Taken : Boolean;
       begin
          Sent := Sent + 1;
@@ -354,10 +358,10 @@ procedure Test_Authentication is
       ------------
 
       procedure Strike is
-         Next  : constant Freshness := To.Last + 1;
+         Next  : constant Freshness_Value := To.Last + 1;
          Other : Setting := S;
          Frame : Any_Frame;
-         Value : Freshness;
+         Value : Freshness_Value;
          Taken : Boolean;
       begin
          case Kind is
@@ -452,7 +456,7 @@ procedure Test_Authentication is
       for S of Settings loop
          for I in 1 .. 200 loop
             declare
-               Value : constant Freshness :=
+               Value : constant Freshness_Value :=
                  Shift_Right (Random, Random (0, 63));
                Frame : constant Any_Frame :=
                  Sealed (S, Random (0, 1_000_000), Value);

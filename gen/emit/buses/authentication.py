@@ -60,7 +60,7 @@ KEYS, MESSAGES = "Keys", "Messages"
 
 ITEM = ref("Ravenchart.Can.Authentication.Mac_Input")
 ANSWER = ref("Ravenchart.Can.Authentication.Mac_Answer")
-FRESHNESS = ref("Ravenchart.Can.Authentication.Freshness")
+FRESHNESS = ref("Ravenchart.Can.Authentication.Freshness_Value")
 
 FRAME, VALUE, VERDICT = ref("Frame"), ref("Value"), ref("Verdict")
 

@@ -30,7 +30,7 @@ is
    -- Last_Freshness --
    --------------------
 
-   function Last_Freshness (Message : Messages) return Freshness
+   function Last_Freshness (Message : Messages) return Freshness_Value
    is (case Message is
          when Message_Third_In  => 16#1_FFFF_FFFD#,
          when Message_Third_Out => 16#2_FFFF_FFFA#,
