@@ -179,14 +179,16 @@ def _written(folder: Path) -> list[checking.Checked]:
 def record_names(name: str, folder: Path) -> tuple[str, ...]:
     """The records of the model in the folder: two, or two for each deployment and node.
 
-    The second of a program shows termination. A library, where nothing runs, has one record.
+    The second of a program shows termination. There is none where bodies are outside SPARK, or
+    of a library, where nothing runs.
     """
     generated = folder / "generated"
     homes = sorted(project.parent.relative_to(generated) for project in generated.rglob("*.gpr"))
     own = tuple("-".join((name, *home.parts)) for home in homes)
     parts = {p.parent for p in folder.glob("*/generated/*-*.ads") if p.parent.parent.name != "user"}
     libraries = sorted(project.stem for home in parts for project in home.glob("*.gpr"))
-    both = (record for one in own for record in (one, f"{one}-{proving.TERMINATION}"))
+    ends = () if (folder / outside_spark.FILE).is_file() else (f"-{proving.TERMINATION}",)
+    both = (f"{one}{end}" for one in own for end in ("", *ends))
     return (*both, *(f"{name}-{library}" for library in libraries))
 
 
@@ -282,7 +284,7 @@ def _programs(name: str, folder: Path, *, warnings: str = "error") -> Iterator[T
             target = "-".join(part for part in parts if part)
             yield Target(target, program.proof(driver, warnings=warnings), folder)
             ending = program.termination(driver)
-            if ending is not None:
+            if ending is not None and not (folder / outside_spark.FILE).is_file():
                 yield Target(f"{target}-{proving.TERMINATION}", ending)
 
 

@@ -283,26 +283,19 @@ class Program:
         main = self.proof(driver)
         home = self.home(driver) / TERMINATION
         declared = ages.age_of(ages.version()).termination
-        project = str(self.project.resolve())
-        files = termination_files(self.part, project, declared)
+        files = termination_files(self.part, ROOT, self.project, declared)
         shutil.rmtree(home, ignore_errors=True)
-        home.mkdir(parents=True)
         for name, text in files.items():
+            (home / name).parent.mkdir(parents=True, exist_ok=True)
             (home / name).write_text(text, encoding="utf-8")
-        bodies = tuple(name for name in files if name.endswith(".adb"))
-        libraries = (self.home(driver) / one.stem for one in self.checked.libraries)
+        places = (home, home / "runtime")
         return ProofTask(
             home / f"{TERMINATION}.gpr",
             main.scenario,
-            (
-                home / "objects" / "gnatprove",
-                *main.results,
-                *(one / "checks" / "gnatprove" for one in libraries),
-                work() / "obj" / f"checks-{driver}" / "gnatprove",
-            ),
-            (home, *main.sources),
+            tuple(place / "objects" / "gnatprove" for place in places),
+            (*places, *main.sources),
             warnings=main.warnings,
-            units=bodies,
+            units=tuple(name for name in files if name.endswith(".adb")),
             shows=TERMINATION,
             made=home,
         )

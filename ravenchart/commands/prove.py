@@ -70,15 +70,18 @@ def execute(options: argparse.Namespace) -> int:
     for one in made:
         name = one.node or one.checked.system.name
         proof, open_ = _proof(one, driver, options)
-        ending, left = _ending(one, driver, options)
+        ending, endless = _ending(one, driver, options)
+        excused = outside_spark.listed(proof.results.outside, reasons)
+        left = () if excused else endless
         for finding in (*open_, *left):
             say(options.answer, "\n".join(finding.lines()))
         answer.programs.append(_proved(name, proof, ending, (*open_, *left)))
         where = f" on {one.node}" if one in nodes and len(nodes) > 1 else ""
         print(f"{one.checked.system.name}{where}: {proof.summary()}", flush=True)
         if ending is not None:
-            print(f"{one.checked.system.name}{where}: {_told(one, ending)}", flush=True)
-        clean = clean and proof.clean and (ending is None or ending.clean)
+            told = _told(one, endless, excused=bool(excused))
+            print(f"{one.checked.system.name}{where}: {told}", flush=True)
+        clean = clean and proof.clean and not left
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
             record = record_of(options.record, name, several=len(made) > 1)
@@ -132,11 +135,17 @@ def record_of(path: Path, node: str, *, several: bool) -> Path:
     return path.with_name(f"{path.stem}-{node}{path.suffix}") if several else path
 
 
-def _told(one: programs.Program, ending: proving.Proof) -> str:
-    """Whether each execution ends, in the one line of it."""
+def _told(one: programs.Program, left: Sequence[unproved.UnprovedCheck], *, excused: bool) -> str:
+    """Whether each execution ends, in a line; ``excused``: there are bodies outside SPARK."""
     rows = len(one.part.slots)
-    what = "executions of 1 row end" if rows == 1 else f"executions of {rows} rows end"
-    return f"all {what}: {'proved' if ending.clean else 'NOT PROVED'}"
+    if not left or not excused:
+        what = "executions of 1 row end" if rows == 1 else f"executions of {rows} rows end"
+        return f"all {what}: {'NOT PROVED' if left else 'proved'}"
+    names = ", ".join(finding.element for finding in left)
+    return (
+        f"executions of {rows - len(left)} of {rows} rows end: proved; bodies outside SPARK may "
+        f"be below {names}"
+    )
 
 
 def _proved(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.emit.nodes.termination import ending_claims
+from ravenchart.proof.outside_spark import OF_INTERRUPTS, OF_SLOTS
 
 from . import records
 from .claim import Claim, ClaimKind, Shown, verdict_of
@@ -26,6 +27,11 @@ def endings(facts: Facts) -> Iterator[Claim]:
 def _ending(facts: Facts, node: NodeFacts) -> Claim:
     record, claims = node.ending, ending_claims(node.program.part)
     problems = [NO_RECORD] if record is None else [*record.problems, *_missing(node)]
+    verdict = verdict_of(problems, shown=record is not None)
+    hidden = _outside(facts, node)
+    if record is not None and record.proved < record.checks and len(problems) == 1 and hidden:
+        verdict = Shown.PARTLY
+        problems = [f"{problems[0]}: rows may call what is outside SPARK, {', '.join(hidden)}"]
     several = len(facts.nodes) > 1
     slots = node.program.part.slots
     return Claim(
@@ -39,7 +45,7 @@ def _ending(facts: Facts, node: NodeFacts) -> Claim:
         f"{len(claims)} claims about {len(slots)} rows.",
         "proof",
         records.UNKNOWN_TOOL if record is None else record.tool,
-        verdict_of(problems, shown=record is not None),
+        verdict,
         tuple(problems),
         (
             *(() if record is None else ((f"record {record.name}", record.digest),)),
@@ -47,6 +53,13 @@ def _ending(facts: Facts, node: NodeFacts) -> Claim:
             *node.files,
         ),
     )
+
+
+def _outside(facts: Facts, node: NodeFacts) -> tuple[str, ...]:
+    """Bodies outside SPARK that rows may call, by the list beside the model."""
+    own = [name for name, _ in facts.reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS}]
+    found = () if node.record is None else node.record.outside
+    return tuple(name for name in found if not records.uncovered((name,), own))
 
 
 def _missing(node: NodeFacts) -> Iterator[str]:

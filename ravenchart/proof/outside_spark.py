@@ -89,6 +89,12 @@ def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outsi
     return tuple(o for o in found if not any(_covers(name, o) for name in reasons))
 
 
+def listed(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outside, ...]:
+    """The entities outside SPARK that the list beside a model names; not those of the runtime."""
+    own = [name for name in reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS}]
+    return tuple(o for o in found if any(_covers(name, o) for name in own))
+
+
 def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
     """Names of the list that cover nothing; those of the runtime need not."""
     asked = (name for name in reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS})

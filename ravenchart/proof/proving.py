@@ -132,7 +132,8 @@ def prove(
     results = replace(results, outside=_with_code(results.outside, inputs))
     read = {path: digest for path, digest in inputs.items() if _is_read(path, results)}
     if task.made is not None:
-        read = {path: d for path, d in read.items() if path.parent != task.made.resolve()}
+        made = task.made.resolve()
+        read = {path: digest for path, digest in read.items() if not path.is_relative_to(made)}
     sources = tuple(sorted((_shown(path), digest) for path, digest in read.items()))
     proof = Proof(results, sources, ages.tool_text(version), cached, task.shows)
     if failed is not None:

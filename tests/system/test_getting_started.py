@@ -95,10 +95,10 @@ def test_the_tank_is_proved_and_the_unbounded_level_of_the_page_is_not(
     record = tank / "proof.toml"
     assert main(["prove", model, "--record", str(record)]) == 0
     assert stale_sources(record) == stale_sources(of_termination(record)) == ()
-    told = capsys.readouterr().out
-    assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", told)
+    printed = capsys.readouterr().out
+    assert re.search(r"checks (\d+), proved \1, justified 0, assumed 0", printed)
     assert "`all executions of 4 rows end: proved`" in PAGE
-    assert "all executions of 4 rows end: proved\n" in told
+    assert "all executions of 4 rows end: proved\n" in printed
     body = tank / "user" / "tank_system-plant-activities.adb"
     bounded = "Unit_Mm'Max (0, Unit_Mm'Min (2_000, Height + Change))"
     assert bounded in body.read_text()

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +15,12 @@ import pytest
 from ravenchart.building import checking, programs
 from ravenchart.command_line import main
 from ravenchart.evidence.records import of_termination
-from ravenchart.gen.emit.nodes.termination import Declared, ending_claims, termination_files
+from ravenchart.gen.emit.nodes.termination import (
+    SLOTS,
+    Declared,
+    ending_claims,
+    termination_files,
+)
 from ravenchart.paths import ROOT
 from ravenchart.tools import toolchain
 
@@ -36,9 +42,10 @@ def test_there_is_a_claim_for_each_row_and_for_what_a_processor_calls() -> None:
     assert {claim.element for claim in claims} == {*rows, *names}
     assert len({claim.entity.lower() for claim in claims}) == len(claims)
     for declared in Declared:
-        files = termination_files(program.part, "x.gpr", declared)
-        (spec,) = (text for name, text in files.items() if name.endswith(".ads"))
+        files = termination_files(program.part, ROOT, Path("x.gpr"), declared)
+        spec = files["contracts_feature-termination.ads"]
         assert spec.count(declared.value) == len(claims)
+        assert files[f"runtime/{SLOTS}"].count(declared.value) == 2
         (other,) = (one for one in Declared if one is not declared)
         assert other.value not in spec
 
@@ -105,3 +112,30 @@ def test_what_may_not_end_is_named(
     assert all(line.startswith(f"{folder / MODEL}:") for line in found)
     record = of_termination(folder / "proof.toml").read_text(encoding="utf-8")
     assert f'{BODY}" = "' in record
+
+
+@proved
+@pytest.mark.slow
+def test_rows_that_may_call_bodies_outside_spark_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "contracts"
+    shutil.copytree(FEATURE, folder)
+    body = folder / BODY
+    head = "      Noted  : out Boolean)\n   is\n"
+    text = body.read_text(encoding="utf-8")
+    assert text.count(head) == 1
+    body.write_text(text.replace(head, head.replace("   is", "   with SPARK_Mode => Off\n   is")))
+    name = "Contracts_Feature.Plant.Activities.Filter"
+    (folder / "outside_spark.toml").write_text(f'"{name}" = "tried"\n')
+    record = str(folder / "proof.toml")
+    assert main(["prove", str(folder / MODEL), "--record", record]) == 0
+    line = (
+        "executions of 12 of 14 rows end: proved; bodies outside SPARK may be below "
+        "plant_1.filter, plant_2.filter"
+    )
+    assert line in "".join(capsys.readouterr())
+    main(["evidence", str(folder / MODEL), "--record", record])
+    claims = json.loads((folder / "evidence" / "evidence.json").read_text())["claims"]
+    (claim,) = (one for one in claims if one["id"] == "termination")
+    assert claim["verdict"] == "partly" and name in claim["reasons"][0]

@@ -11,9 +11,11 @@ declare termination in ways that exclude each other.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
@@ -49,25 +51,37 @@ _HEADER = (
 _PROJECT = """\
 --  Written by `ravenchart prove` of the model of {system}.
 
-with "ravenchart.gpr";
-with "{project}";
+with "runtime/{runtime_file}.gpr";
 
-project {unit} is
+project {unit} extends all "{project}" is
 
    for Source_Dirs use (".");
    for Object_Dir use "objects";
    for Create_Missing_Dirs use "True";
 
    package Compiler is
-      for Default_Switches ("Ada") use Ravenchart.Program_Switches;
+      for Default_Switches ("Ada") use {runtime}.Program_Switches;
       for Local_Configuration_Pragmas use
-        Ravenchart'Project_Dir & "spark_runtime/ravenscar.adc";
+        "{root}/spark_runtime/ravenscar.adc";
    end Compiler;
-
-   package Prove renames Ravenchart.Prove;
 
 end {unit};
 """
+RUNTIME = "Terminating_Runtime"
+_RUNTIME_PROJECT = """\
+--  Written by `ravenchart prove`.
+
+project {runtime} extends "{root}/ravenchart.gpr" is
+
+   for Source_Dirs use (".");
+   for Object_Dir use "objects";
+   for Create_Missing_Dirs use "True";
+
+end {runtime};
+"""
+SLOTS = "ravenchart-shared_slots.ads"
+"""The unit of the runtime below rows whose body is outside SPARK: it is assumed to return."""
+_PROCEDURE = re.compile(r"(   procedure (\w+) \([^)]*\)\n   with )(Global => \([^)]*\));")
 
 
 class Declared(Enum):
@@ -100,10 +114,21 @@ def ending_claims(part: System) -> tuple[EndingClaim, ...]:
     return tuple(claim for one in part.processors for claim, _ in _claims(part, one))
 
 
-def termination_files(part: System, project: str, declared: Declared) -> dict[str, str]:
-    """File name to text: the unit of the claims, and the project to prove it with.
+def declared_to_end(slots: str, declared: Declared) -> str:
+    """The spec `SLOTS` with its two procedures declared to terminate (ASM-023)."""
+    if declared is Declared.ASPECT:
+        return _PROCEDURE.sub(rf"\1{declared.value}, \3;", slots)
+    claim = f"   pragma Annotate (GNATprove, {declared.value}, \\2);"
+    return _PROCEDURE.sub(rf"\1\3;\n{claim}", slots)
 
-    ``project`` is the path of the project of the program.
+
+def termination_files(
+    part: System, root: Path, project: Path, declared: Declared
+) -> dict[str, str]:
+    """File name to text: the unit of the claims, and the projects to prove it with.
+
+    ``root`` is the folder of the runtime, and ``project`` the project of the program. Both are
+    extended, so that a spec of the runtime can be another one here.
     """
     header, name = _HEADER.format(system=part.name), unit_name(part)
     specs: list[Decl] = [UseType(ELEMENT_ID)]
@@ -119,8 +144,16 @@ def termination_files(part: System, project: str, declared: Declared) -> dict[st
     body = Package(name, tuple(bodies), (SPARK,), is_body=True)
     units = Unit(header, tuple(sorted(withs)), spec), Unit(header, tuple(sorted(rows)), body)
     files = {unit.file_name: print_unit(unit) for unit in units}
-    text = _PROJECT.format(system=part.name, project=project, unit=UNIT)
-    return {**files, f"{UNIT.lower()}.gpr": text}
+    place = root.resolve().as_posix()
+    names = {"system": part.name, "unit": UNIT, "runtime": RUNTIME, "root": place}
+    names["runtime_file"] = RUNTIME.lower()
+    slots = (root / "spark_runtime" / "src" / SLOTS).read_text(encoding="utf-8")
+    return {
+        **files,
+        f"{UNIT.lower()}.gpr": _PROJECT.format(project=project.resolve().as_posix(), **names),
+        f"runtime/{RUNTIME.lower()}.gpr": _RUNTIME_PROJECT.format(**names),
+        f"runtime/{SLOTS}": declared_to_end(slots, declared),
+    }
 
 
 def _home(processor: Processor) -> str:

@@ -75,6 +75,10 @@ def _record(old: str, new: str) -> Spoil:
     return lambda home: _edit(home / "proof.toml", old, new)
 
 
+def _program_for_ending(home: Path) -> None:
+    (home / ENDING).write_bytes((home / "proof.toml").read_bytes())
+
+
 def _ending(old: str, new: str) -> Spoil:
     return lambda home: _edit(home / ENDING, old, new)
 
@@ -159,9 +163,7 @@ CASES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "termination: a digest": (
         lambda home: _edit(home / ENDING, _digest(home), "0" * 64), ENDS,
     ),
-    "termination: the record of the program in its place": (
-        lambda home: (home / ENDING).write_bytes((home / "proof.toml").read_bytes()), ENDS,
-    ),
+    "termination: the record of the program in its place": (_program_for_ending, ENDS),
     "termination: no record": (lambda home: (home / ENDING).unlink(), ENDS),
     "runtime: a source": (
         lambda home: _append(home / "runtime.ads"), ("runtime-loopback", "runtime-slcan"),
