@@ -63,7 +63,7 @@ def _outside(facts: Facts, node: NodeFacts) -> tuple[str, ...]:
 
 
 def _missing(node: NodeFacts) -> Iterator[str]:
-    """What the record of termination does not show of this program."""
+    """Gaps of the record of termination."""
     yield from (f"the program is not what this model gives: {one}" for one in node.differences)
     assert node.ending is not None
     shown = {entity.name.lower() for entity in node.ending.entities}

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from ravenchart.gen.emit.nodes.termination import Declared
+from ravenchart.gen.emit.nodes.termination import TerminationForm
 from ravenchart.tools import toolchain
 
 _PART = re.compile(r"\b(Why3|CVC4|cvc5|Z3|Alt-Ergo)(?: for gnatprove)? version v?(\d[^\s,]*)")
@@ -29,13 +29,13 @@ class Age:
     name: str
     switches: tuple[str, ...]
     """Two provers; a check that is not proved is an error."""
-    termination: Declared
+    termination: TerminationForm
     """How a subprogram is declared to terminate."""
 
 
-GNAT_12 = Age("gnat-12", ("--prover=z3,cvc4", "--checks-as-errors"), Declared.ANNOTATION)
+GNAT_12 = Age("gnat-12", ("--prover=z3,cvc4", "--checks-as-errors"), TerminationForm.ANNOTATION)
 GNAT_14 = Age(
-    "gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30"), Declared.ASPECT
+    "gnat-14", ("--prover=z3,cvc5", "--checks-as-errors=on", "--timeout=30"), TerminationForm.ASPECT
 )
 """A few checks take its provers more than the 10 s of the project files."""
 AGES = (GNAT_14, GNAT_12)

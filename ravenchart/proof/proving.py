@@ -28,7 +28,7 @@ from .spark_results import Outside, Results
 from .verdicts import Memcached
 
 TERMINATION = "termination"
-"""What a record shows that every execution ends. It rests on the bodies of all that runs."""
+"""A record that every execution ends rests on the bodies of all that runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class ProofTask:
     units: tuple[str, ...] = ()
     """The source files to prove, when not all."""
     shows: str = ""
-    """What its record shows; empty for all checks of a project."""
+    """The kind of its record; empty for all checks of a project."""
     made: Path | None = None
     """A folder of sources that were made for this run alone: no record names them."""
 

@@ -17,7 +17,7 @@ from ravenchart.command_line import main
 from ravenchart.evidence.records import of_termination
 from ravenchart.gen.emit.nodes.termination import (
     SLOTS,
-    Declared,
+    TerminationForm,
     ending_claims,
     termination_files,
 )
@@ -41,12 +41,12 @@ def test_there_is_a_claim_for_each_row_and_for_what_a_processor_calls() -> None:
     names = {one.name for one in program.part.processors}
     assert {claim.element for claim in claims} == {*rows, *names}
     assert len({claim.entity.lower() for claim in claims}) == len(claims)
-    for declared in Declared:
+    for declared in TerminationForm:
         files = termination_files(program.part, ROOT, Path("x.gpr"), declared)
         spec = files["contracts_feature-termination.ads"]
         assert spec.count(declared.value) == len(claims)
         assert files[f"runtime/{SLOTS}"].count(declared.value) == 2
-        (other,) = (one for one in Declared if one is not declared)
+        (other,) = (one for one in TerminationForm if one is not declared)
         assert other.value not in spec
 
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from ravenchart.gen.emit.ada.naming import ada_case, root_package
 from ravenchart.gen.emit.commands.lifecycle import RUNTIME_FOLDER, has_lifecycle
@@ -156,3 +157,54 @@ def simulation_project(system: System) -> str:
     """The project file of the program in virtual time; see `simulation`."""
     name = ada_case(system.name)
     return _SIMULATION.format(model=system.name, name=name, main=name.lower())
+
+
+TERMINATING_RUNTIME = "Terminating_Runtime"
+_TERMINATION = """\
+--  Written by `ravenchart prove` of the model of {system}.
+
+with "runtime/{runtime_file}.gpr";
+
+project {unit} extends all "{project}" is
+
+   for Source_Dirs use (".");
+   for Object_Dir use "objects";
+   for Create_Missing_Dirs use "True";
+
+   package Compiler is
+      for Default_Switches ("Ada") use {runtime}.Program_Switches;
+      for Local_Configuration_Pragmas use
+        "{root}/spark_runtime/ravenscar.adc";
+   end Compiler;
+
+end {unit};
+"""
+
+_RUNTIME_PROJECT = """\
+--  Written by `ravenchart prove`.
+
+project {runtime} extends "{root}/ravenchart.gpr" is
+
+   for Source_Dirs use (".");
+   for Object_Dir use "objects";
+   for Create_Missing_Dirs use "True";
+
+end {runtime};
+"""
+
+
+def termination_projects(system: System, unit: str, root: Path, project: Path) -> tuple[str, str]:
+    """The project of the claims that executions end, and that of the runtime below it.
+
+    Both extend others: ``project``, that of the program, and the one at ``root``, so that a spec
+    of the runtime can be another one here.
+    """
+    names = {
+        "system": system.name,
+        "unit": unit,
+        "project": project.resolve().as_posix(),
+        "root": root.resolve().as_posix(),
+        "runtime": TERMINATING_RUNTIME,
+        "runtime_file": TERMINATING_RUNTIME.lower(),
+    }
+    return _TERMINATION.format(**names), _RUNTIME_PROJECT.format(**names)

@@ -42,49 +42,19 @@ from ravenchart.gen.model.system import Processor, System
 from ravenchart.gen.origins import Origin
 
 from .deployment import row_call, row_unit
+from .project import TERMINATING_RUNTIME, termination_projects
 
 UNIT = "Termination"
 _HEADER = (
     "Written by `ravenchart prove` of the model of {system}: claims that every execution ends. No "
     "part of the program."
 )
-_PROJECT = """\
---  Written by `ravenchart prove` of the model of {system}.
-
-with "runtime/{runtime_file}.gpr";
-
-project {unit} extends all "{project}" is
-
-   for Source_Dirs use (".");
-   for Object_Dir use "objects";
-   for Create_Missing_Dirs use "True";
-
-   package Compiler is
-      for Default_Switches ("Ada") use {runtime}.Program_Switches;
-      for Local_Configuration_Pragmas use
-        "{root}/spark_runtime/ravenscar.adc";
-   end Compiler;
-
-end {unit};
-"""
-RUNTIME = "Terminating_Runtime"
-_RUNTIME_PROJECT = """\
---  Written by `ravenchart prove`.
-
-project {runtime} extends "{root}/ravenchart.gpr" is
-
-   for Source_Dirs use (".");
-   for Object_Dir use "objects";
-   for Create_Missing_Dirs use "True";
-
-end {runtime};
-"""
 SLOTS = "ravenchart-shared_slots.ads"
 """The unit of the runtime below rows whose body is outside SPARK: it is assumed to return."""
 _PROCEDURE = re.compile(r"(   procedure (\w+) \([^)]*\)\n   with )(Global => \([^)]*\));")
 
 
-class Declared(Enum):
+class TerminationForm(Enum):
     """How a subprogram is declared to terminate."""
 
     ANNOTATION = "Terminating"
@@ -114,16 +84,16 @@ def ending_claims(part: System) -> tuple[EndingClaim, ...]:
     return tuple(claim for one in part.processors for claim, _ in _claims(part, one))
 
 
-def declared_to_end(slots: str, declared: Declared) -> str:
+def declared_to_end(slots: str, form: TerminationForm) -> str:
     """The spec `SLOTS` with its two procedures declared to terminate (ASM-023)."""
-    if declared is Declared.ASPECT:
-        return _PROCEDURE.sub(rf"\1{declared.value}, \3;", slots)
-    claim = f"   pragma Annotate (GNATprove, {declared.value}, \\2);"
+    if form is TerminationForm.ASPECT:
+        return _PROCEDURE.sub(rf"\1{form.value}, \3;", slots)
+    claim = f"   pragma Annotate (GNATprove, {form.value}, \\2);"
     return _PROCEDURE.sub(rf"\1\3;\n{claim}", slots)
 
 
 def termination_files(
-    part: System, root: Path, project: Path, declared: Declared
+    part: System, root: Path, project: Path, form: TerminationForm
 ) -> dict[str, str]:
     """File name to text: the unit of the claims, and the projects to prove it with.
 
@@ -136,7 +106,7 @@ def termination_files(
     for processor in part.processors:
         found = [sub for _, sub in _claims(part, processor)]
         home = ref(_home(processor))
-        specs.append(Package(home, tuple(_specs(found, declared))))
+        specs.append(Package(home, tuple(_specs(found, form))))
         bodies.append(Package(home, tuple(map(_body, found)), is_body=True))
     withs = {processor_package(part, one) for one in part.processors} | {ref("Ravenchart")}
     rows = {row_unit(part, slot) for one in part.processors for slot in one.slots}
@@ -144,15 +114,13 @@ def termination_files(
     body = Package(name, tuple(bodies), (SPARK,), is_body=True)
     units = Unit(header, tuple(sorted(withs)), spec), Unit(header, tuple(sorted(rows)), body)
     files = {unit.file_name: print_unit(unit) for unit in units}
-    place = root.resolve().as_posix()
-    names = {"system": part.name, "unit": UNIT, "runtime": RUNTIME, "root": place}
-    names["runtime_file"] = RUNTIME.lower()
     slots = (root / "spark_runtime" / "src" / SLOTS).read_text(encoding="utf-8")
+    own, of_runtime = termination_projects(part, UNIT, root, project)
     return {
         **files,
-        f"{UNIT.lower()}.gpr": _PROJECT.format(project=project.resolve().as_posix(), **names),
-        f"runtime/{RUNTIME.lower()}.gpr": _RUNTIME_PROJECT.format(**names),
-        f"runtime/{SLOTS}": declared_to_end(slots, declared),
+        f"{UNIT.lower()}.gpr": own,
+        f"runtime/{TERMINATING_RUNTIME.lower()}.gpr": of_runtime,
+        f"runtime/{SLOTS}": declared_to_end(slots, form),
     }
 
 
@@ -186,12 +154,12 @@ def _claims(part: System, processor: Processor) -> Iterator[tuple[EndingClaim, S
         yield claimed("Overrun", name, at, (item, used), call)
 
 
-def _specs(found: list[Subprogram], declared: Declared) -> Iterator[Decl]:
+def _specs(found: list[Subprogram], form: TerminationForm) -> Iterator[Decl]:
     for sub in found:
-        more = (Aspect(declared.value),) if declared is Declared.ASPECT else ()
+        more = (Aspect(form.value),) if form is TerminationForm.ASPECT else ()
         yield Subprogram(sub.name, sub.params, aspects=(*more, *sub.aspects))
-        if declared is Declared.ANNOTATION:
-            yield Pragma("Annotate", (ref("GNATprove"), ref(declared.value), ref(sub.name)))
+        if form is TerminationForm.ANNOTATION:
+            yield Pragma("Annotate", (ref("GNATprove"), ref(form.value), ref(sub.name)))
 
 
 def _body(sub: Subprogram) -> Subprogram:
