@@ -132,6 +132,7 @@ CODES: Mapping[str, str] = {
     "RV-0532": "An event is deferred, and no transition takes it afterwards.",
     "RV-0533": "A do activity raises `done`, and nothing waits for it.",
     "RV-0534": "Nothing reads a parameter, or nothing uses a data item.",
+    "RV-0535": "The groups of a port region do not divide the input ports of the component.",
     "RV-0601": "A connection does not lead from an output port to an input port.",
     "RV-0602": "An input port has no source.",
     "RV-0603": "An input port has two sources.",
@@ -316,6 +317,9 @@ def in_order(
 
 Sources = Mapping[str, tuple[str, ...]]
 """The lines of each file, by its name as given."""
+
+UNREADY = "RV-0804"
+"""The model is checked and analysed, but not generated yet."""
 
 MARGIN = 120
 """Longest excerpt of a line, in characters."""

@@ -32,10 +32,9 @@ from ravenchart.analysis.system.authentication import authentications
 from ravenchart.analysis.system.latencies import Latency, reception_frames
 from ravenchart.analysis.system.protection import protected
 from ravenchart.analysis.system.timing import Analysis
-from ravenchart.gen.diagnostics import Diagnostic, error
+from ravenchart.gen.diagnostics import UNREADY, Diagnostic, error
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.claims import ChainClaim, Claims, ResponseClaim
-from ravenchart.gen.model.system import UNREADY
 
 from .deadlines import each_finding
 

@@ -116,10 +116,10 @@ def _add_instance(graph: nx.DiGraph[Stop | str], instance: Instance) -> None:
         graph.add_node(at(port.name), kind="port", label=port.name)
     for data in component.data:
         graph.add_node(at(data.name), kind="data", label=data.name)
-    if component.port_region is not None:
-        graph.add_node(at("ports"), kind="row", label="ports")
-        for port in component.inputs():
-            graph.add_edge(at(port.name), at("ports"), kind="handles")
+    for handler in component.handlers():
+        graph.add_node(at(handler), kind="row", label=handler)
+        for port in component.handled(handler):
+            graph.add_edge(at(port.name), at(handler), kind="handles")
     for row in _rows(component):
         graph.add_node(at(row.name), kind="row", label=row.name)
     for row, name, kind in _uses(component):

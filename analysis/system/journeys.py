@@ -125,7 +125,7 @@ def _stages(chain: Chain, system: System, seen: Observation) -> Iterator[Stage]:
             jobs = ()
         elif place in inputs:
             came = [r.time for r in seen.of("arrived", str(place))]
-            ran = [r.time for r in seen.of("activity", f"{place.instance}.ports")]
+            ran = [r.time for r in seen.of("activity", system.handler(place))]
             link = links.get(place)
             if link is None or row not in link.rows:
                 yield from (Stage(came, jobs), Stage(ran))

@@ -181,7 +181,7 @@ class Latencies:
                 continue
             row, port = str(place), self._input(place)
             if port is not None:
-                row = f"{place.instance}.ports"
+                row = self.system.handler(place)
             elif row not in self.rows:
                 continue
             if kept:

@@ -108,12 +108,13 @@ def _silence(analysis: Analysis, message: Message, end: End) -> PortSilence:
     component = system.instance(end.instance).component
     home, limit = system.home(end), component.port(end.name).max_age
     element = next(one.element for one in system.receptions(message) if one.node == home)
-    if component.port_region is None or limit is None:
+    handler = component.handlers().get(component.handler(end.name))
+    if handler is None or limit is None:
         return PortSilence(end, element, None)
     delivery = analysis.deliveries.get(element)
     delivered = delivery.bound if delivery else None
-    response = analysis.found.from_event(system.processor_of(f"{end.instance}.ports").name)
+    response = analysis.found.from_event(system.processor_of(system.handler(end)).name)
     if delivered is None or response is None:
         return PortSilence(end, element, None)
-    period = component.port_region.period
+    period = handler.period
     return PortSilence(end, element, Ns(delivered + (limit // period + 2) * period + response))

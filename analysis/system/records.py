@@ -89,7 +89,7 @@ def of_slot(system: System, slot: Slot) -> Records:
         return own + Records(3) + _events(system, node, system.bus(slot.owner).raises)
     counts = _Counts(system, slot.owner)
     if slot.work is Work.PORT_REGION:
-        return own + counts.ports()
+        return own + counts.ports(slot.name)
     rows = counts.instance.component.runnables()
     return own + counts.row(next(row for row in rows if row.name == slot.name))
 
@@ -161,16 +161,19 @@ class _Counts:
 
     # --- its rows
 
-    def ports(self) -> Records:
-        """The port region: each input has a new value, or none in time, and has lost some."""
+    def ports(self, row: str) -> Records:
+        """A handler: each of its ports has a new value, or none in time, and has lost some."""
         found = Records()
-        for port in self.instance.component.inputs():
+        component = self.instance.component
+        for port in component.handled(row):
             new, stale = self.offered(port.on_arrival), self.offered(port.on_stale)
             found += Records(1 + max(new.trace, stale.trace)) + self.offered(port.on_overflow)
             found += self._recorded(port.name)
-        polled = (one.port for one in self.system.polls if one.instance == self.instance.name)
+        own, polls = {port.name for port in component.handled(row)}, self.system.polls
+        polled = (p.port for p in polls if p.instance == self.instance.name and p.port in own)
         found += _sum(self.put(port) for port in polled)
-        return found + _sum(Records(FRAME + 1) for one, _ in self._messages() if one.controls)
+        controls = (name for one, name in self._messages() if one.controls and name in own)
+        return found + _sum(Records(FRAME + 1) for _ in controls)
 
     def row(self, row: Region | Activity) -> Records:
         """A region or an activity, with what goes before and behind its steps or requests."""

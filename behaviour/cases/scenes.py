@@ -107,8 +107,7 @@ class ScenePlayer:
                 drawn = one.drawn(now, self._chance, known, present)
                 (values if one.is_port else events).append(drawn)
         time = run.component.region(scene.region).timing.period
-        if run.component.port_region is not None:
-            time = max(time, run.component.port_region.period)
+        time = max((time, *(one.period for one in run.component.handlers().values())))
         receivers = frozenset((name, what) for what in needed)
         return PlayedScene(tuple(values), tuple(events), receivers, time)
 

@@ -135,7 +135,8 @@ def _wanted(
 def _of_instance(instance: Instance, system: System, fed: set[End]) -> Iterator[Choice]:
     component = instance.component
     numbers = _numbers(component, instance)
-    names = {event for event, row in external_events(component, system) if row != "ports"}
+    raised = external_events(component, system)
+    names = {event for event, row in raised if row not in component.handlers()}
     for event in component.events:
         if event.name in names:
             yield Choice(instance.name, event.name, False, event.type, numbers)

@@ -31,7 +31,7 @@ from .traces import StepRecord, ValueRecord
 
 
 class Mailbox:
-    """The values at an input port that wait for the port region."""
+    """The values at an input port that wait for the row that handles it."""
 
     def __init__(self, port: Port) -> None:
         """An empty mailbox; that of a sampled port keeps the last value."""
@@ -41,7 +41,7 @@ class Mailbox:
         self.policy = Overflow.DROP_OLDEST if sampled else port.overflow
         self.waiting: deque[Value] = deque()
         self.has_lost = False
-        """A value was lost since the last run of the port region."""
+        """A value was lost since the last run of the handler."""
 
     def put(self, value: Value, visible: int) -> None:
         """Keep a value, or lose one; it is visible at once."""
@@ -54,10 +54,10 @@ class Mailbox:
             self.waiting.append(value)
 
     def look(self, now: int) -> None:
-        """Let the port region find what is visible at an instant: all that waits."""
+        """Let the handler find what is visible at an instant: all that waits."""
 
     def coming(self) -> list[Value]:
-        """The values that the port region has not taken, oldest first."""
+        """The values that the handler has not taken, oldest first."""
         return list(self.waiting)
 
 
@@ -80,7 +80,7 @@ class LogicalMailbox(Mailbox):
         return [value for at, value in reversed(self.kept) if at >= self.next]
 
     def look(self, now: int) -> None:
-        """Let the port region find the newest value that is visible and was not taken before."""
+        """Let the handler find the newest value that is visible and was not taken before."""
         self.waiting.clear()
         found = next(((at, value) for at, value in self.kept if at <= now), None)
         if found is not None and found[0] >= self.next:
@@ -134,12 +134,12 @@ class InstanceRun:
 
     # --- rows
 
-    def run_ports(self) -> list[tuple[str, Value]]:
-        """Run the port region: at most one arrival of each port; the values that it took."""
+    def run_ports(self, handler: str, now: Ns) -> list[tuple[str, Value]]:
+        """Run a row that handles ports: at most one arrival of each; the values that it took."""
         taken: list[tuple[str, Value]] = []
-        timing = self.component.port_region
-        assert timing is not None
-        for port in self.component.inputs():
+        timing = self.component.handlers()[handler]
+        for port in self.component.handled(handler):
+            self.mailboxes[port.name].look(now)
             mailbox, before = self.mailboxes[port.name], self.ports[port.name]
             happened: list[tuple[str | None, Value | None]] = []
             if mailbox.has_lost:
@@ -308,9 +308,7 @@ class Machine:
         """One execution of a row."""
         match slot.work:
             case Work.PORT_REGION:
-                for box in self.instances[slot.owner].mailboxes.values():
-                    box.look(now)
-                for name, value in self.instances[slot.owner].run_ports():
+                for name, value in self.instances[slot.owner].run_ports(slot.name, now):
                     self._record(now, slot.owner, name, value)
             case Work.REGION:
                 yield from self._run_region(now, self.instances[slot.owner], slot.name)

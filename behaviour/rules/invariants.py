@@ -25,7 +25,7 @@ from .budget import Exhausted
 from .labels import active_leaves, begun_at, step_label, valuation
 from .logic import Term, Variable
 from .reach import Reachable
-from .schedule import PORTS, in_one_table, schedules
+from .schedule import in_one_table, schedules
 from .search import Violation, WaySearch
 from .stepping import Configuration
 from .threads import Edge, Thread
@@ -232,13 +232,14 @@ def _stale(reach: Reachable, system: System, thread: Thread) -> Pairs:
     """Copies of variables that a thread may have read before another processor wrote them."""
     component = reach.component
     rows = {r.name: r for r in component.runnables()}
-    beside = {name for name in (*rows, PORTS) if in_one_table(system, component, thread.name, name)}
+    known = (*rows, *component.handlers())
+    beside = {name for name in known if in_one_table(system, component, thread.name, name)}
     old = []
     for name, type_ in reach.types.items():
         if name[0] == "in" and name not in reach.symbols:
             continue
         writers = [r.name for r in rows.values() if name[1] in r.writes or name[1] == r.name]
-        writers += [PORTS] if name[0] in ("port", "port state") else []
+        writers += [component.handler(name[1])] if name[0] in ("port", "port state") else []
         if any(writer not in beside for writer in writers):
             old.append((reach.symbol(name), logic.symbol(f"old {name}", type_)))
     return old

@@ -23,7 +23,6 @@ from ravenchart.gen.model.system import System
 
 from . import logic
 from .logic import Term, Variable
-from .schedule import PORTS
 
 
 def as_region(activity: Activity) -> Region:
@@ -75,7 +74,8 @@ def external_events(component: Component, system: System) -> Iterator[tuple[str,
     """
     instances = {i.name for i in system.instances if i.component.name == component.name}
     for port in component.ports:
-        yield from ((e, PORTS) for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
+        row = component.handler(port.name)
+        yield from ((e, row) for e in (port.on_arrival, port.on_stale, port.on_overflow) if e)
     for activity in component.activities:
         if activity.flow is None:
             for event in activity.raises:

@@ -20,9 +20,6 @@ from ravenchart.gen.model.system import System
 
 from .logic import Term
 
-PORTS = "ports"
-"""The row of the port region."""
-
 
 @dataclass(frozen=True, slots=True)
 class RowReleases:

@@ -22,7 +22,7 @@ from ravenchart.gen.model.statechart import After, Every
 from . import logic
 from .logic import PORT_STATES, Term, Variable
 from .outcomes import Outcome
-from .schedule import PORTS, RowReleases
+from .schedule import RowReleases
 from .stepping import Configuration
 
 if TYPE_CHECKING:
@@ -254,10 +254,11 @@ class TimedWay:
 
     def _writer(self, name: Variable) -> str | None:
         """The row that writes a value from outside."""
+        component = self.search.reach.component
         if name[0] in ("port", "port state"):
-            return PORTS
+            return component.handler(name[1])
         if name[0] == "data":
-            for activity in self.search.reach.component.activities:
+            for activity in component.activities:
                 if name[1] in activity.writes:
                     return activity.name
         return None

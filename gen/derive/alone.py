@@ -33,7 +33,7 @@ from ravenchart.gen.language.terms import (
     leaves,
     named,
 )
-from ravenchart.gen.model.component import Activity, Component, Direction, Port
+from ravenchart.gen.model.component import PORTS, Activity, Component, Direction, Port
 from ravenchart.gen.model.instances import Instance
 from ravenchart.gen.model.statechart import DONE
 from ravenchart.gen.model.system import Processor, Shutdown, Slot, System, Work
@@ -124,7 +124,7 @@ def _with_rows(
     rows: list[Slot] = []
     if instance.component.port_region is None and component.port_region is not None:
         timing = component.port_region
-        rows.append(Slot(first.origin, instance.name, Work.PORT_REGION, "ports", timing, 1, 0))
+        rows.append(Slot(first.origin, instance.name, Work.PORT_REGION, PORTS, timing, 1, 0))
     for one in component.activities[len(instance.component.activities) :]:
         rows.append(Slot(first.origin, instance.name, Work.ACTIVITY, one.name, one.timing, 1, 0))
     more = replace(first, slots=(*rows, *first.slots))

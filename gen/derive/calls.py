@@ -64,7 +64,8 @@ def callers(system: System, device: Device) -> tuple[End, ...]:
         if isinstance(binding.provider, Device) and device in binding.provider.leaves()
         for row in asking(system, binding)
     )
-    handlers = (End(poll.instance, "ports") for poll in system.polls if poll.device == device)
+    polls = ((poll.instance, poll.port) for poll in system.polls if poll.device == device)
+    handlers = (End(name, system.instance(name).component.handler(port)) for name, port in polls)
     return tuple(dict.fromkeys((*rows, *handlers)))
 
 

@@ -108,7 +108,7 @@ def _crossings(system: System, links: Mapping[End, LogicalLink]) -> Iterator[Cro
     for instance in system.instances:
         for port in instance.component.inputs():
             end = End(instance.name, port.name)
-            home = system.processor_of(f"{instance.name}.ports").core
+            home = system.processor_of(instance.handler(port.name)).core
             senders = senders_to(system, end)
             away = [cores[name] for name in senders if cores[name] != home]
             if away or end in links:

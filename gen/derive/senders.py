@@ -26,7 +26,7 @@ def sending_rows(system: System, message: Message) -> tuple[str, ...]:
     if message.call is not None and message.is_reply:
         return (str(serving(message.call.server)),)
     if message.controls:
-        return (f"{source.name}.ports",)
+        return (source.handler(message.source.name),)
     return tuple(
         f"{source.name}.{item.name}"
         for item in source.component.runnables()

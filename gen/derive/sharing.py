@@ -69,7 +69,7 @@ class _Sharing:
         component = instance.component
         runnables = component.runnables()
         for port in component.inputs():
-            handler = self.runs(instance.name, "ports")
+            handler = self.runs(instance.name, component.handler(port.name))
             element = f"{instance.name}.{port.name}"
             if element not in self.crossing:
                 end = End(instance.name, port.name)
@@ -199,7 +199,7 @@ class _Sharing:
                 yield from self.raisers_of_call(one, named)
         for port in component.inputs():
             if named & {port.on_arrival, port.on_stale, port.on_overflow}:
-                yield self.runs(instance.name, "ports")
+                yield self.runs(instance.name, component.handler(port.name))
         yield from self.raisers_outside(instance, named)
 
     def raisers_outside(self, instance: Instance, named: Set[str]) -> Iterable[str]:
@@ -315,7 +315,7 @@ def objects_on_node(system: System) -> tuple[SharedObject, ...]:
         objects.append(sharing.made_on_each(f"{bus.name}.receive", [*drivers, *receivers]))
         for message in system.messages:
             if message.bus == bus.name and message.transport is not None:
-                rows = sending_rows(system, message) or [f"{message.targets[0].instance}.ports"]
+                rows = sending_rows(system, message) or [system.handler(message.targets[0])]
                 ends = [system.processor_of(row).name for row in rows]
                 objects.append(sharing.made_on_each(f"{message.element}.flow", [*ends, *receivers]))
     for processor in system.processors:

@@ -3,7 +3,7 @@
 
 """The flow control of values that travel in several frames: a message back to the sender.
 
-The port region of the receiver sends it at the end of an execution, one at most.
+The row that handles the receiving port sends it at the end of an execution, one at most.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ def _flows(system: System) -> Iterator[Message]:
         if transport is None or source is None or len(message.targets) != 1:
             continue
         target = message.targets[0]
-        handler = system.instance(target.instance).component.port_region
+        component = system.instance(target.instance).component
+        handler = component.handlers().get(component.handler(target.name))
         if handler is None or system.home(target) == system.home(source):
             continue
         yield Message(

@@ -32,6 +32,7 @@ TITLES: Mapping[str, str] = {
     "InputForm": "Port: input",
     "OutputForm": "Port: output",
     "PortRegionForm": "Port region",
+    "PortGroupForm": "Group of ports",
     "EventForm": "Event",
     "DataForm": "Data item",
     "InvariantForm": "Invariant",

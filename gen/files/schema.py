@@ -7,10 +7,10 @@ The one source for the validation of files, for docs/model.schema.json and for
 docs/model-reference.md. Checks that need more than one element are in `resolve` and `rules`.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Discriminator, Tag
 from pydantic import Field as PydanticField
+from pydantic import Tag
 
 from .schema_base import (
     Constant,
@@ -22,6 +22,7 @@ from .schema_base import (
     Reference,
     StarredReference,
     Version,
+    by_key,
     key,
     optional,
     shaped,
@@ -46,6 +47,7 @@ from .schema_devices import (
     RequiredForm,
 )
 from .schema_frames import BusForm, MessageForm
+from .schema_ports import PortForm, PortRegionForm
 
 # --- Types -----------------------------------------------------------------------
 
@@ -77,31 +79,11 @@ class FieldsType(Element):
     )
 
 
-def _has(*keys: str) -> Any:
-    """The tag of the first of these keys that a mapping has."""
-
-    def tag(value: Any) -> str | None:
-        if isinstance(value, dict):
-            return next((f"<{name}>" for name in keys if name in value), None)
-        return None
-
-    return tag
-
-
-def _one_of(what: str, *keys: str) -> Discriminator:
-    message = f"{what} is a mapping with one of the keys {', '.join(f'`{name}`' for name in keys)}"
-    return Discriminator(
-        _has(*keys),
-        custom_error_type="choice",
-        custom_error_message=message,
-    )
-
-
 TypeForm = Annotated[
     Annotated[RangeType, Tag("<range>")]
     | Annotated[ValuesType, Tag("<values>")]
     | Annotated[FieldsType, Tag("<fields>")],
-    _one_of("a type", "range", "values", "fields"),
+    by_key("a type", "range", "values", "fields"),
 ]
 
 
@@ -169,7 +151,7 @@ ActionForm = Annotated[
     | Annotated[CallForm, Tag("<call>")]
     | Annotated[RaiseForm, Tag("<raise>")]
     | Annotated[IfForm, Tag("<if>")],
-    _one_of("an action", "set", "send", "call", "raise", "if"),
+    by_key("an action", "set", "send", "call", "raise", "if"),
 ]
 
 
@@ -181,46 +163,6 @@ class ParameterForm(Element):
 
     type: Reference = key("A scalar type.")
     default: Constant | None = optional("Value for instances that set none; without it all must.")
-
-
-class InputForm(Element):
-    """An input port."""
-
-    in_: Reference = key("The type of what arrives.", alias="in")
-    kind: Literal["sampled", "queued"] = PydanticField(
-        default="sampled",
-        description="`sampled` keeps the last value, `queued` the last `depth` ones.",
-    )
-    depth: int | None = optional(
-        "Values that wait at most, 1 to 1024; `queued` needs it.", ge=1, le=1024
-    )
-    overflow: Literal["reject_newest", "drop_oldest"] | None = optional(
-        "The value that a full queue loses; only for `queued`; `reject_newest` unless given."
-    )
-    max_age: PositiveSpan | None = optional("A value older than this is stale.")
-    on_arrival: Reference | None = optional("Event raised when a value arrives.")
-    on_stale: Reference | None = optional("Event raised when the value becomes stale.")
-    on_overflow: Reference | None = optional("Event raised when values were lost; only `queued`.")
-
-
-class OutputForm(Element):
-    """An output port."""
-
-    out: Reference = key("The type of what is sent.")
-
-
-PortForm = Annotated[
-    Annotated[InputForm, Tag("<in>")] | Annotated[OutputForm, Tag("<out>")],
-    _one_of("a port", "in", "out"),
-]
-
-
-class PortRegionForm(Element):
-    """When the handlers of the input ports run."""
-
-    period: PositiveSpan = key("Period of the handlers.")
-    wcet: PositiveSpan = key("Worst-case execution time of all handlers together.")
-    deadline: PositiveSpan | None = optional("Relative deadline; the period unless given.")
 
 
 class DataForm(Element):

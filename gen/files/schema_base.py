@@ -62,6 +62,27 @@ def optional(description: str, **limits: Any) -> Any:
     return PydanticField(default=None, description=description, **limits)
 
 
+def _has(*keys: str) -> Any:
+    """The tag of the first of these keys that a mapping has."""
+
+    def tag(value: Any) -> str | None:
+        if isinstance(value, dict):
+            return next((f"<{name}>" for name in keys if name in value), None)
+        return None
+
+    return tag
+
+
+def by_key(what: str, *keys: str) -> Discriminator:
+    """The choice between forms by the first of these keys that a mapping has."""
+    message = f"{what} is a mapping with one of the keys {', '.join(f'`{name}`' for name in keys)}"
+    return Discriminator(
+        _has(*keys),
+        custom_error_type="choice",
+        custom_error_message=message,
+    )
+
+
 # --- Values --------------------------------------------------------------------
 
 

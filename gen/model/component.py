@@ -166,6 +166,20 @@ class Activity:
         return self.while_in if DONE in self.raises else None
 
 
+PORTS = "ports"
+"""The row of the port region."""
+
+
+@dataclass(frozen=True, slots=True)
+class PortGroup:
+    """Input ports that a row of their own handles, in place of the port region."""
+
+    name: str
+    origin: Origin
+    timing: Timing
+    ports: tuple[str, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Component:
     """A component type. ``port_region`` is None exactly when it has no input port."""
@@ -184,6 +198,8 @@ class Component:
     provides: tuple[Provided, ...] = ()
     hears: tuple[InterfaceEvent, ...] = ()
     """The events of its required interfaces."""
+    groups: tuple[PortGroup, ...] = ()
+    """Those of the port region, which handles every input port that none of them names."""
 
     def inputs(self) -> tuple[Port, ...]:
         """The input ports, in model order."""
@@ -192,6 +208,20 @@ class Component:
     def outputs(self) -> tuple[Port, ...]:
         """The output ports, in model order."""
         return tuple(p for p in self.ports if p.direction is Direction.OUT)
+
+    def handlers(self) -> dict[str, Timing]:
+        """The rows that handle input ports: the port region, then its groups in model order."""
+        if self.port_region is None:
+            return {}
+        return {PORTS: self.port_region} | {group.name: group.timing for group in self.groups}
+
+    def handler(self, port: str) -> str:
+        """The row that handles an input port."""
+        return next((group.name for group in self.groups if port in group.ports), PORTS)
+
+    def handled(self, row: str) -> tuple[Port, ...]:
+        """The input ports that a row handles, in model order."""
+        return tuple(port for port in self.inputs() if self.handler(port.name) == row)
 
     def port(self, name: str) -> Port:
         """The port called ``name``; KeyError where there is none."""

@@ -83,6 +83,10 @@ class Instance:
     composites: tuple[str, ...] = ()
     """The composite components around it, outermost first: one for each name before its own."""
 
+    def handler(self, port: str) -> str:
+        """The element of the row that handles an input port."""
+        return f"{self.name}.{self.component.handler(port)}"
+
     def outside(self, name: str) -> tuple[str, Origin]:
         """How a port or required interface is called where it can be joined, and where that is."""
         found = (one for one in self.delegations if one.end == End(self.name, name))

@@ -32,6 +32,8 @@ class LogicalLink:
     receiver: Processor
     lasting: Ns
     """The logical execution time."""
+    handler: str
+    """The element of the row that takes the values."""
     rows: tuple[str, ...]
     """The elements of the rows that send."""
     depth: int
@@ -43,11 +45,6 @@ class LogicalLink:
     """
     by_releases: bool
     """Whether the releases of the sender are fewer than the executions of its rows together."""
-
-    @property
-    def handler(self) -> str:
-        """The element of the row that takes the values."""
-        return f"{self.connection.target.instance}.ports"
 
 
 def logical_links(system: System) -> tuple[LogicalLink, ...]:
@@ -106,11 +103,13 @@ def _links(system: System) -> Iterator[LogicalLink]:
         logical = next((p for p, _ in places if p.logical is not None), None)
         if logical is None or logical.logical is None or port.kind is not PortKind.SAMPLED:
             continue
-        receiver = system.processor_of(f"{connection.target.instance}.ports")
+        handler = system.handler(connection.target)
+        receiver = system.processor_of(handler)
         if receiver.name == logical.name or receiver.released_by is not None:
             continue
         ahead = logical.logical + receiver.deadline
         of_rows = sum(-(-ahead // period_of(processor, slot)) for processor, slot in places)
         of_releases = -(-ahead // logical.period)
         depth, fewer = 1 + min(of_rows, of_releases), of_releases < of_rows
-        yield LogicalLink(connection, logical, receiver, logical.logical, rows, depth, fewer)
+        ends = connection, logical, receiver
+        yield LogicalLink(*ends, logical.logical, handler, rows, depth, fewer)

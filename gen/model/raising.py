@@ -53,12 +53,13 @@ def raised_at_once(system: System, taken: Events) -> dict[str, int]:
             tallies = [tally for _, tally in (*steps.single(), *steps.shared())]
             most = max((len(tally.get(RAISED, ())) for tally in tallies), default=0)
             found[region.name] = most * region.steps_per_execution
-    found["ports"] = sum(_of_port(port, events) for port in component.inputs())
+    for handler in component.handlers():
+        found[handler] = sum(_of_port(port, events) for port in component.handled(handler))
     return {f"{taken.instance}.{row}": count for row, count in found.items() if count}
 
 
 def _of_port(port: Port, events: set[str]) -> int:
-    """How many of the events one execution of the port region raises for a port."""
+    """How many of the events one execution of its handler raises for a port."""
     return len(events & {port.on_overflow}) + bool(events & {port.on_arrival, port.on_stale})
 
 

@@ -29,12 +29,6 @@ from .recording import RecordedItem, RecordedValue
 from .safety import SafeRegion
 from .statechart import Timing
 
-UNREADY = "RV-0804"
-"""The model is checked and analysed, but not generated yet."""
-
-UNFIT_PORT = "RV-0715"
-"""A port, interface or region that cannot release a processor."""
-
 
 class Work(Enum):
     """The kind of work of an entry of a processor's table."""
@@ -55,7 +49,7 @@ class Slot:
     """Instance; for BUS_RECEIVE and BUS_WATCH the bus."""
     work: Work
     name: str
-    """``ports``, ``receive``, ``watch``, or the name of the region or activity."""
+    """``receive``, ``watch``, or the name of the port region, group, region or activity."""
     timing: Timing
     divisor: int
     phase: int
@@ -436,6 +430,10 @@ class System:
     def home(self, end: End) -> str:
         """The node of an end's instance."""
         return self.nodes[0].name if len(self.nodes) == 1 else self.instance(end.instance).node
+
+    def handler(self, port: End) -> str:
+        """The element of the row that handles an input port."""
+        return self.instance(port.instance).handler(port.name)
 
     def queue(self, message: Message) -> str:
         """The first-in first-out queue of the controller that sends a message; "" for none."""

@@ -342,11 +342,11 @@ def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Po
     instances = tuple(
         replace(one, component=_pruned(one.component, of[one.name])) for one in system.instances
     )
-    kept = {i.name: {row.name for row in i.component.runnables()} | {"ports"} for i in instances}
+    kept = {i.name: {*_rows(i.component)} for i in instances}
     added = {i.name: _times_of_calls(i.component, of[i.name]) for i in instances}
     for poll in polls:
-        ports = added[poll.instance].get("ports", Ns(0))
-        added[poll.instance]["ports"] = Ns(ports + poll.wcet)
+        row = system.instance(poll.instance).component.handler(poll.port)
+        added[poll.instance][row] = Ns(added[poll.instance].get(row, Ns(0)) + poll.wcet)
     processors = (_of_kept(one, kept, added) for one in system.processors)
     used = [b.provider for b in bindings if isinstance(b.provider, Device)]
     used += [poll.device for poll in polls]
@@ -359,6 +359,10 @@ def with_bindings(system: System, bindings: tuple[Binding, ...], polls: tuple[Po
         bindings=bindings,
         polls=polls,
     )
+
+
+def _rows(component: Component) -> Iterator[str]:
+    yield from (*component.handlers(), *(row.name for row in component.runnables()))
 
 
 def _parts(device: Device) -> tuple[Device, ...]:

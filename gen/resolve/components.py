@@ -11,16 +11,24 @@ from dataclasses import dataclass, replace
 from ravenchart.gen.files.schema import (
     ActivityForm,
     ComponentForm,
-    PortRegionForm,
     RegionForm,
 )
 from ravenchart.gen.files.schema_deployment import ProbeForm
 from ravenchart.gen.files.schema_frames import WatchForm
+from ravenchart.gen.files.schema_ports import PortGroupForm, PortRegionForm
 from ravenchart.gen.language.names import Findings, NameScope, Unknown, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Flow, Ns, Type
 from ravenchart.gen.model.commands import Command, Need
-from ravenchart.gen.model.component import Activity, Clause, Component, Direction, StateRef
+from ravenchart.gen.model.component import (
+    PORTS,
+    Activity,
+    Clause,
+    Component,
+    Direction,
+    PortGroup,
+    StateRef,
+)
 from ravenchart.gen.model.statechart import DONE, Region, Timing
 from ravenchart.gen.origins import Origin
 
@@ -31,6 +39,7 @@ from .contracts import contract_of, sent
 from .flows import Targets, Use, called_command, flow_of
 from .interfaces import fallbacks_agree, heard_of, needs_of, provided_of, servers_serve_once
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
+from .port_groups import groups_of
 from .vocabulary import Vocabulary
 
 
@@ -51,7 +60,7 @@ class Parts:
 
 def timing_of(
     name: str,
-    form: PortRegionForm | RegionForm | ActivityForm | ProbeForm | WatchForm,
+    form: PortRegionForm | PortGroupForm | RegionForm | ActivityForm | ProbeForm | WatchForm,
     findings: Findings,
 ) -> Timing:
     """Period, WCET and deadline, checked against each other."""
@@ -123,6 +132,10 @@ def parts_of(
         provided_of(given, at, dictionary, types, members, activities, findings)
         for given, at in (form.provides or {}).items()
     )
+    port_region = _port_region(name, form, members, findings)
+    groups: tuple[PortGroup, ...] = ()
+    if form.port_region is not None:
+        groups = groups_of(form.port_region, members.ports, space, timing_of)
     component = Component(
         name=name,
         origin=form.origin,
@@ -130,13 +143,14 @@ def parts_of(
         ports=members.ports.sound(),
         events=members.events.sound(),
         data=members.data.sound(),
-        port_region=_port_region(name, form, members, findings),
+        port_region=port_region,
         regions=tuple(regions),
         activities=activities.sound(),
         invariants=invariants_of(form, words, findings),
         needs=needs,
         provides=tuple(one for one in provides if one is not None),
         hears=hears,
+        groups=groups,
     )
     if findings.count() == before:
         fallbacks_agree(form, component, findings)
@@ -162,20 +176,24 @@ def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> Na
 def _rows(name: str, form: ComponentForm, component: Component) -> NameScope[str]:
     """The rows that tables may hold of an instance of the component."""
     scope: NameScope[str] = NameScope(f"region or activity of {name}")
-    scope.open = form.lost("regions") or form.lost("activities")
+    region = form.port_region
+    scope.open = form.lost("regions") or form.lost("activities") or form.lost("port_region")
+    scope.open |= region is not None and region.lost("groups")
     if component.port_region is not None:
-        scope.declare("ports", None, "ports")
+        scope.declare(PORTS, None, PORTS)
     elif (
         form.lost("port_region")
         or form.lost("ports")
         or form.dropped("ports")
         or component.inputs()
     ):
-        scope.declare("ports", None, None)
-    sound: tuple[Region | Activity, ...] = (*component.regions, *component.activities)
+        scope.declare(PORTS, None, None)
+    sound: tuple[PortGroup | Region | Activity, ...]
+    sound = (*component.groups, *component.regions, *component.activities)
     for item in sound:
         scope.declare(item.name, item.origin, item.name)
     for lost in (
+        *(() if region is None else region.dropped("groups")),
         *(form.regions or {}),
         *form.dropped("regions"),
         *form.dropped("activities"),

@@ -10,10 +10,11 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 from ravenchart.gen.diagnostics import warning
-from ravenchart.gen.files.schema import ComponentForm, InputForm
+from ravenchart.gen.files.schema import ComponentForm
 from ravenchart.gen.files.schema_base import Element
 from ravenchart.gen.files.schema_deployment import InnerConnectionForm, plain_parameters
 from ravenchart.gen.files.schema_devices import InnerBindingForm, ProvidedForm, RequiredForm
+from ravenchart.gen.files.schema_ports import InputForm
 from ravenchart.gen.language.names import Findings, NameScope
 from ravenchart.gen.language.terms import Type
 from ravenchart.gen.model.commands import Command

@@ -27,6 +27,7 @@ from ravenchart.gen.language.names import Findings, NameScope, meant
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, BusErrors, Message
+from ravenchart.gen.model.component import PORTS
 from ravenchart.gen.model.instances import End
 from ravenchart.gen.model.nodes import (
     SNAPSHOT_PERIOD,
@@ -324,7 +325,7 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames)
     if found is None:
         return None
     instance, parts, name = found
-    if name.lower() == "ports" and not parts.rows.knows(name):
+    if name.lower() == PORTS and not parts.rows.knows(name):
         message = f"{instance.component.name} has no input ports, so no row `{text}`"
         site.findings.error("RV-0305", origin, message, hint="remove the row")
         return None
@@ -332,8 +333,9 @@ def _slot(text: str, origin: Origin, form: ProcessorForm, site: DeploymentNames)
     if row is None:
         return None
     component = instance.component
-    if row == "ports" and component.port_region is not None:
-        timing, work = component.port_region, Work.PORT_REGION
+    handler = component.handlers().get(row)
+    if handler is not None:
+        timing, work = handler, Work.PORT_REGION
     elif any(region.name == row for region in component.regions):
         timing, work = component.region(row).timing, Work.REGION
     else:

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ravenchart.gen.files.schema import ComponentForm, InputForm, InvariantForm, OutputForm
+from ravenchart.gen.files.schema import ComponentForm, InvariantForm
+from ravenchart.gen.files.schema_ports import InputForm, OutputForm
 from ravenchart.gen.language.names import HIDING, Findings, NameScope
 from ravenchart.gen.language.terms import Ns, Reading, Type
 from ravenchart.gen.model.component import (
+    PORTS,
     Data,
     Direction,
     Event,
@@ -27,7 +29,10 @@ from .typed import condition
 from .values import initial_value, parameter
 from .vocabulary import EVENT, Vocabulary
 
-TABLE_WORDS = ("ports", "receive")
+GROUP = "group of ports"
+"""The kind of the groups of a port region, in messages."""
+
+TABLE_WORDS = (PORTS, "receive")
 """The names of the port region and of a bus's reception in tables."""
 
 RENAMED = ("state", "transition", "event")
@@ -66,7 +71,7 @@ class Namespace:
             what = f"the system {self.system}"
         elif kind not in RENAMED and name.lower() in HIDING:
             what = "a unit, type or value of Ada that the generated program uses"
-        elif kind in ("region", "activity") and name.lower() in TABLE_WORDS:
+        elif kind in ("region", "activity", GROUP) and name.lower() in TABLE_WORDS:
             what = "a row that tables have anyway"
         if what is not None:
             message = f"the {kind} `{name}` is named like {what}"

@@ -9,12 +9,14 @@ from ravenchart.gen.language.names import NameScope, meant
 from ravenchart.gen.model.component import Direction, Port
 from ravenchart.gen.model.instances import End, Events, Instance, Queue, Requests
 from ravenchart.gen.model.nodes import InterruptLine
-from ravenchart.gen.model.system import UNFIT_PORT
 from ravenchart.gen.origins import Origin
 
 from .components import Parts
 from .composites import connectable, provided_by
 from .paths import DeploymentNames, member_of
+
+UNFIT_PORT = "RV-0715"
+"""A port, interface or region that cannot release a processor."""
 
 
 def releaser_of(

@@ -85,7 +85,7 @@ def _crossing_values(system: System) -> Iterator[Diagnostic]:
     """One processor sends, and no value that was sent is taken back."""
     polled = {(poll.instance, poll.port) for poll in system.polls}
     for crossing in crossings(system):
-        origin = system.processor_of(f"{crossing.target.instance}.ports").origin
+        origin = system.processor_of(system.handler(crossing.target)).origin
         where = f"{crossing.element}, on core {crossing.taken_on},"
         for text, hint in _refused(system, crossing, polled):
             yield error(SHARED, origin, f"{where} {text}", hint=hint)

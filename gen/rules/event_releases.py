@@ -15,7 +15,8 @@ from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.model.instances import Events, Instance
 from ravenchart.gen.model.raising import starts_with, taking_region
 from ravenchart.gen.model.statechart import After, Every, Region, When
-from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
+from ravenchart.gen.model.system import Processor, System, Work
+from ravenchart.gen.resolve.releasers import UNFIT_PORT
 from ravenchart.gen.resolve.system import Resolved
 
 from .released_tables import TABLE, Problem, other_period, waiting_rows

@@ -59,7 +59,7 @@ def _connections(system: System) -> Iterator[Diagnostic]:
     """Values of sampled ports, to periodic processors."""
     for connection in system.connections:
         sender = _logical(system, connection)
-        receiver = system.processor_of(f"{connection.target.instance}.ports")
+        receiver = system.processor_of(system.handler(connection.target))
         if sender is None or sender.name == receiver.name:
             continue
         name = f"{connection.target}, on {receiver.name},"

@@ -17,7 +17,8 @@ from ravenchart.gen.language.terms import named
 from ravenchart.gen.model.commands import Binding, Device, Gathered, Provided, Remote, Server
 from ravenchart.gen.model.component import PortKind
 from ravenchart.gen.model.instances import Connection, End, Instance, Requests
-from ravenchart.gen.model.system import UNFIT_PORT, Processor, System, Work
+from ravenchart.gen.model.system import Processor, System, Work
+from ravenchart.gen.resolve.releasers import UNFIT_PORT
 from ravenchart.gen.resolve.system import Resolved
 
 from .event_releases import events_can_release
@@ -52,12 +53,12 @@ def tables_handle_the_port(resolved: Resolved) -> Iterator[Diagnostic]:
             continue
         if not _is_queued(resolved.system.instance(port.instance), port):
             continue  # that is an error of its own, and perhaps another port is meant
-        if not processor.slots or processor.slots[0].element != f"{port.instance}.ports":
+        handler = resolved.system.handler(port)
+        if not processor.slots or processor.slots[0].element != handler:
             message = f"{processor.name} is released by {port}, but does not handle it first"
-            hint = f"begin its table with `{port.instance}.ports`"
-            yield error(TABLE, processor.origin, message, hint=hint)
+            yield error(TABLE, processor.origin, message, hint=f"begin its table with `{handler}`")
         for slot in processor.slots:
-            fits = slot.work in (Work.PORT_REGION, Work.ACTIVITY)
+            fits = slot.work is Work.ACTIVITY or slot.element == handler
             if slot.owner != port.instance or not fits:
                 message = f"{processor.name} is released by {port}, but holds {slot.element}"
                 hint = "move it to a periodic processor"
@@ -103,10 +104,15 @@ def _of_instance(system: System, instance: Instance, end: End) -> Iterator[Probl
             words,
             "remove it: `check` proves it for periodic rows only",
         )
-    for port in component.inputs():
+    called = any(one.name == end.name for one in component.provides)
+    row = component.handler(end.name)
+    for port in component.inputs() if called else component.handled(row):
         if port.name != end.name:
-            message = f"{cannot}: {component.name} has another input port, `{port.name}`"
-            yield message, port.origin, f"`{port.name}` is declared here", apart
+            words, hint = f"{component.name} has", apart
+            if not called:
+                words, hint = f"its row {row} handles", f"put `{end.name}` into a group of its own"
+            message = f"{cannot}: {words} another input port, `{port.name}`"
+            yield message, port.origin, f"`{port.name}` is declared here", hint
     for provided in component.provides:
         if provided.name == end.name:
             continue

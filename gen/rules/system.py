@@ -316,8 +316,7 @@ def rows_are_allocated_once(resolved: Resolved) -> Iterator[Diagnostic]:
         return
     for instance in system.instances:
         component = instance.component
-        names = [] if component.port_region is None else ["ports"]
-        names += [item.name for item in component.runnables()]
+        names = [*component.handlers(), *(item.name for item in component.runnables())]
         missing = [name for name in names if f"{instance.name}.{name}" not in first]
         if missing:
             listed = ", ".join(f"{instance.name}.{name}" for name in missing)

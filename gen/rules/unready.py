@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.derive.completion import programs
-from ravenchart.gen.diagnostics import Diagnostic, error
-from ravenchart.gen.model.system import UNREADY, System
+from ravenchart.gen.diagnostics import UNREADY, Diagnostic, error
+from ravenchart.gen.model.system import System
 
 
 def unready(system: System) -> Iterator[Diagnostic]:

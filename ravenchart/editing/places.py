@@ -73,7 +73,7 @@ class DeclaredRow:
     owner: str
     name: str
     kind: str
-    """``ports``, ``region``, ``activity``, ``receive`` or ``watch``."""
+    """``ports``, also of a group, ``region``, ``activity``, ``receive`` or ``watch``."""
     entry: NamedEntry
     keys: Mapping[str, str]
 
@@ -235,6 +235,10 @@ class ModelPlaces:
         ports = _inner(component, "port_region")
         if ports is not None:
             yield self._row(component, "ports", "ports", ports)
+            groups = ports.mapping.mapping("groups")
+            for key, mapping in () if groups is None else groups.mappings():
+                entry = NamedEntry(component.file, key, mapping)
+                yield self._row(component, key.value, "ports", entry)
         for section, kind in (("regions", "region"), ("activities", "activity")):
             found = component.mapping.mapping(section)
             for key, mapping in () if found is None else found.mappings():

@@ -18,7 +18,7 @@ from .equipment import Equipment
 from .findings import UnusableError
 from .frames import Frame, length_of
 from .messages import Message, transfer_of
-from .model import Mapping, Model, Text
+from .model import Mapping, Model, Text, handler_of, handlers_of
 from .tasks import Row, Task
 
 
@@ -164,8 +164,9 @@ class Deployment:
     def _flows(self) -> list[Message]:
         """Flow control of values in several frames: the port region that receives sends it."""
         for message in (m for m in self.messages if m.transfer is not None and m.source):
-            owner = message.targets[0].rpartition(".")[0]
-            period = self.component_of(owner).map("port_region").time("period")
+            owner, _, port = message.targets[0].rpartition(".")
+            component = self.component_of(owner)
+            period = dict(handlers_of(component))[handler_of(component, port)].time("period")
             message.flow = Message(
                 name=f"{message.name}_Flow",
                 bus=message.bus,
@@ -186,7 +187,8 @@ class Deployment:
         """The rows that send a message."""
         source = message.source or ""
         if message.controls:
-            return {f"{source.rpartition('.')[0]}.ports"}
+            owner, _, port = source.rpartition(".")
+            return {f"{owner}.{handler_of(self.component_of(owner), port)}"}
         return {row for row, _ in self.rows_that_send(source)}
 
     def _carried(self, source: str, bus: str) -> Message:
@@ -353,8 +355,9 @@ class Deployment:
             watch = own.map("watch")
             return _timed(f"{bus}.watch", watch)
         component = self.component_of(owner)
-        if name.lower() == "ports":
-            return _timed(f"{self.instance(owner)}.ports", component.map("port_region"))
+        for handler, own in handlers_of(component):
+            if handler.lower() == name.lower():
+                return _timed(f"{self.instance(owner)}.{handler}", own)
         for section in ("regions", "activities"):
             rows = component.map(section)
             own_name = rows.name(name)

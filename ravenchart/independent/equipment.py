@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from .model import Mapping, Model, Text, quantity
+from .model import Mapping, Model, Text, handler_of, quantity
 
 EXPRESSIONS = ("guard", "when", "with", "if")
 
@@ -94,12 +94,14 @@ class Equipment:
                 fallback = commands.map(command).text("else") if commands else None
                 yield command, fallback, offer
 
-    def _heard(self, instance: str) -> Iterator[Offer]:
-        """The events of devices that the port region of an instance asks for."""
-        for interface, form in self.component_of(instance).map("requires").maps():
-            for event in form.map("events"):
+    def _heard(self, instance: str, row: str) -> Iterator[Offer]:
+        """The events of devices that a row of an instance asks for: it handles their ports."""
+        component = self.component_of(instance)
+        for interface, form in component.map("requires").maps():
+            for event, port in form.map("events").items():
                 offer = self._bound(instance, interface, event)
-                if offer is not None and offer.devices:
+                asks = handler_of(component, str(port)) == row
+                if asks and offer is not None and offer.devices:
                     yield offer
 
     def idle(self, instance: str) -> set[str]:
@@ -111,9 +113,7 @@ class Equipment:
     def _calls(self, instance: str, row: str) -> Iterator[tuple[Offer, int]]:
         """The bound commands that a row calls, and how often in an execution."""
         component = self.component_of(instance)
-        if row == "ports":
-            yield from ((offer, 1) for offer in self._heard(instance))
-            return
+        yield from ((offer, 1) for offer in self._heard(instance, row))
         form = component.map("regions").map(row) or component.map("activities").map(row)
         steps = form.number("steps", 1)
         reads = 1

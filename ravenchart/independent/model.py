@@ -100,6 +100,19 @@ def _nothing(near: Mapping) -> Mapping:
     return found
 
 
+def handlers_of(component: Mapping) -> list[tuple[str, Mapping]]:
+    """The rows that handle input ports, each with its times: the port region, then its groups."""
+    region = component.map("port_region")
+    return [("ports", region), *region.map("groups").maps()]
+
+
+def handler_of(component: Mapping, port: str) -> str:
+    """The row that takes the values of an input port."""
+    groups = component.map("port_region").map("groups").maps()
+    naming = (name for name, own in groups if port.lower() in map(str.lower, own.texts("ports")))
+    return next(naming, "ports")
+
+
 def integer(text: str) -> int:
     """A number, decimal or 0x..."""
     return int(text.replace("_", ""), 0)

@@ -158,8 +158,8 @@ def _row(
 
 
 def _handler(system: System, end: End, hops: list[ClaimedHop]) -> ClaimedHop:
-    """The port region of an instance, as far as it handles this port."""
-    element = f"{end.instance}.ports"
+    """The row that handles a port, as far as it does this."""
+    element = system.handler(end)
     queued = system.instance(end.instance).component.port(end.name).kind is PortKind.QUEUED
     many = [
         row.steps_per_execution if isinstance(row, Region) else 1

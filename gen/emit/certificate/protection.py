@@ -92,12 +92,11 @@ def _residual(message: Message, own: Protection, claimed: int) -> list[Decl]:
 
 def _stale(system: System, message: Message, end: End, claimed: int) -> list[Decl]:
     """From when a frame is due that is not usable, or does not come: when its port is Stale."""
-    own, processor = name_of(str(end)), system.processor_of(f"{end.instance}.ports")
+    own, processor = name_of(str(end)), system.processor_of(system.handler(end))
     received = system.reception(message, end)
     component = system.instance(end.instance).component
     age = component.port(end.name).max_age
     assert received is not None
-    assert component.port_region is not None
     assert age is not None
     limit, period = ref(f"{own}_Max_Age"), ref(f"{own}_Looks")
     needs = plus(
@@ -113,7 +112,7 @@ def _stale(system: System, message: Message, end: End, claimed: int) -> list[Dec
     return [
         Comment(words),
         stated(limit, age),
-        stated(period, component.port_region.period),
+        stated(period, component.handlers()[component.handler(end.name)].period),
         stated(f"{own}_Stale", claimed),
         named_number(f"{own}_Stale_Needs", needs),
         exact(ref(f"{own}_Stale"), [ref(f"{own}_Stale_Needs")], str(end), "time until it is stale"),

@@ -239,7 +239,7 @@ class Glue(Commands):
         for slot in self._slots():
             match slot.work:
                 case Work.PORT_REGION:
-                    run = [rows.run_ports()]
+                    run = [rows.run_ports(slot.name)]
                 case Work.REGION:
                     run = rows.run_region(component.region(slot.name))
                 case _:

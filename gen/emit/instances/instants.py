@@ -50,8 +50,9 @@ def visible_of(name: str) -> DottedName:
     return ref(f"{ada_case(name)}_Visible")
 
 
-RELEASE = ref("Ports_Release")
-"""The variable of the port region: the release of its execution."""
+def release_of(handler: str) -> DottedName:
+    """The variable of a row that handles ports: the release of its execution."""
+    return ref(f"{ada_case(handler)}_Release")
 
 
 def instant_objects(site: Site) -> Iterator[Decl]:
@@ -101,7 +102,7 @@ def _counting(site: Site) -> Iterator[tuple[Slot, DottedName, int]]:
         if sent is not None:
             yield slot, visible_of(slot.name), sent.lasting
         if any(one.handler == slot.element for one in links):
-            yield slot, RELEASE, 0
+            yield slot, release_of(slot.name), 0
 
 
 def _timed(processor: Processor, slot: Slot, what: str) -> DottedName:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.crossing import crosses
 from ravenchart.gen.emit.ada.declarations import Decl, Object, Param, Subprogram
 from ravenchart.gen.emit.ada.expressions import Expr, OperatorChain, Prefix, number
 from ravenchart.gen.emit.ada.named import DottedName, ref
@@ -41,10 +42,12 @@ def queue_units(site: Site, served: tuple[Provided, ...]) -> set[DottedName]:
     """The units of the queues of ports, of calls and of events."""
     component = site.instance.component
     regions = [region for region in component.regions if region.events()]
-    ports = component.inputs()
-    units = set()
-    if any(releases(site, one) for one in ports) or any(wakes(site, one) for one in served):
-        units.add(ref("Ravenchart.Releasing_Queues"))  # no other port or interface is there
+    ports, units = component.inputs(), set()
+    others = [one for one in ports if not releases(site, one)]
+    if len(others) < len(ports) or any(wakes(site, one) for one in served):
+        units.add(ref("Ravenchart.Releasing_Queues"))  # no interface or region is there as well
+        if any(not crosses(site.system, End(site.instance.name, one.name)) for one in others):
+            units.add(ref("Ravenchart.Queues"))
     elif ports or served or any(not by_events(site, region) for region in regions):
         units.add(ref("Ravenchart.Queues"))
     if any(by_events(site, region) for region in regions):

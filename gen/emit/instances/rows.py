@@ -60,7 +60,7 @@ from ravenchart.gen.model.commands import Binding, Device, Gathered, Poll, Remot
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
-from .instants import RELEASE, link_to, sends_visibly, visible_of
+from .instants import link_to, release_of, sends_visibly, visible_of
 from .releasing import wakes
 from .site import Site
 from .transmission import flow_control, transmits
@@ -69,26 +69,26 @@ from .transmission import flow_control, transmits
 class Rows(Site):
     """The rows of processors' tables that belong to one instance."""
 
-    # --- body: the port region
+    # --- body: the port region and its groups
 
-    def run_ports(self) -> Subprogram:
+    def run_ports(self, handler: str) -> Subprogram:
         component = self.instance.component
-        period = component.port_region.period if component.port_region else 1
+        period, ports = component.handlers()[handler].period, component.handled(handler)
         declarations: list[Decl] = [
             Object("Status", "Ravenchart.Queueing.Take_Status"),
             UseType("Ravenchart.Queueing.Take_Status"),
         ]
-        if any(p.on_overflow for p in component.inputs()):
+        if any(p.on_overflow for p in ports):
             declarations.append(UseType("Ravenchart.Event_Count"))
         body: list[Stmt] = []
         for poll in self.system.polls:
-            if poll.instance == self.instance.name:
+            if poll.instance == self.instance.name and component.handler(poll.port) == handler:
                 asked = f"{ada_case(poll.port)}_Told"
                 told = self.instance.component.port(poll.port).type
                 declarations.append(Object(asked, type_name(self.system, told)))
                 declarations.append(Object(f"{asked}_Now", "Boolean"))
                 body += self._asked_for(poll, asked)
-        for port in component.inputs():
+        for port in ports:
             name = ada_case(port.name)
             declarations.append(Object(f"{name}_Item", type_name(self.system, port.type)))
             declarations.append(
@@ -97,7 +97,7 @@ class Rows(Site):
             limit: Expr = ref(self.component, f"{name}_Port", "Never_Stale")
             if port.max_age is not None:
                 limit = number(port.max_age // period)
-            now = () if link_to(self, port) is None else (RELEASE,)
+            now = () if link_to(self, port) is None else (release_of(handler),)
             taken = ref(f"{name}_Item"), ref("Status")
             body.append(do(ref(self._mailbox(port), "Take"), *now, *taken))
             body.append(
@@ -116,8 +116,9 @@ class Rows(Site):
                 declarations.append(Object(f"{name}_Losses", "Ravenchart.Event_Count"))
                 body += self._watch_losses(port, port.on_overflow)
             body.append(self._react(port))
-        body += flow_control(self.system, self.instance)
-        return Subprogram("Run_Ports", declarations=tuple(declarations), body=tuple(body))
+        body += flow_control(self.system, self.instance, handler)
+        run = f"Run_{ada_case(handler)}"
+        return Subprogram(run, declarations=tuple(declarations), body=tuple(body))
 
     def _asked_for(self, poll: Poll, told: str) -> list[Stmt]:
         """Ask a device for an event, and take it like a value that has arrived."""

@@ -25,18 +25,19 @@ def transmits(system: System, instance: Instance, row: Region | Activity) -> tup
     )
 
 
-def flow_control(system: System, instance: Instance) -> tuple[Do, ...]:
-    """Send the flow control that the segments of a port of the instance ask for."""
+def flow_control(system: System, instance: Instance, handler: str) -> tuple[Do, ...]:
+    """Send the flow control that the segments for the ports of a row ask for."""
     return tuple(
         do(ref(ada_case(message.bus), f"Answer_{ada_case(message.controls)}"))
         for message in system.messages
         if message.controls
         and message.source is not None
-        and message.source.instance == instance.name
+        and system.handler(message.source) == f"{instance.name}.{handler}"
     )
 
 
 def answering(system: System, instance: Instance) -> set[DottedName]:
     """The units that the body of the instance needs for that."""
-    calls = flow_control(system, instance)
+    handlers = instance.component.handlers()
+    calls = (one for handler in handlers for one in flow_control(system, instance, handler))
     return {ref(ada_case(system.name), one.name.first) for one in calls}

@@ -14,7 +14,6 @@ from ravenchart.behaviour.interpreter.observed import FiringReason, ObservedStep
 from ravenchart.behaviour.interpreter.region import RegionRun
 from ravenchart.behaviour.interpreter.traces import seconds
 from ravenchart.behaviour.rules.outside import external_events
-from ravenchart.behaviour.rules.schedule import PORTS
 from ravenchart.gen.draw.picture import label
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import IntegerType, Ns, RecordType, Type, Value
@@ -140,7 +139,7 @@ def _instances(play: Play) -> Iterator[Json]:
     for name, run in play.now.machine.instances.items():
         component = run.component
         told = external_events(component, play.system)
-        outside = {event for event, row in told if row != PORTS}
+        outside = {event for event, row in told if row not in component.handlers()}
         yield {
             "name": name,
             "component": component.name,
