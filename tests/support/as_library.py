@@ -21,10 +21,10 @@ def split(folder: Path, out: Path) -> Path:
     """Write the model of a folder there, in two parts; its main file."""
     shutil.copytree(folder, out, ignore=shutil.ignore_patterns("generated*", "*.yaml"))
     whole: dict[str, Any] = {}
-    _merge(whole, folder / "model.yaml")
+    merge(whole, folder / "model.yaml")
     library = {key: whole.pop(key) for key in SHARED if key in whole}
-    _write(out / "parts/library.yaml", {"library": NAME, "version": "1.0.0", **library})
-    _write(out / "model.yaml", {**whole, "include": ["parts/library.yaml"]})
+    write(out / "parts/library.yaml", {"library": NAME, "version": "1.0.0", **library})
+    write(out / "model.yaml", {**whole, "include": ["parts/library.yaml"]})
     for path in sorted((out / "user").rglob("*.ad[bs]")):
         name = re.match(rf"{whole['system']}-(\w+)-activities\.", path.name, re.I)
         kinds = {one.lower().removesuffix("_type") for one in library.get("components", {})}
@@ -38,7 +38,7 @@ def split(folder: Path, out: Path) -> Path:
     return out / "model.yaml"
 
 
-def _merge(whole: dict[str, Any], path: Path) -> None:
+def merge(whole: dict[str, Any], path: Path) -> None:
     """Add the sections of a file, and of those that it includes."""
     tree = yaml.load(path.read_text("utf-8"), Loader=yaml.BaseLoader)  # texts as they stand
     for key, value in tree.items():
@@ -51,10 +51,10 @@ def _merge(whole: dict[str, Any], path: Path) -> None:
         else:
             whole[key] = value
     for name in tree.get("include", ()):
-        _merge(whole, path.parent / name)
+        merge(whole, path.parent / name)
 
 
-def _write(path: Path, tree: dict[str, Any]) -> None:
+def write(path: Path, tree: dict[str, Any]) -> None:
     path.parent.mkdir(exist_ok=True)
     path.write_text(_plain(tree), "utf-8")
 

@@ -22,7 +22,7 @@ components:
     ports:
       level: {{in: Level}}
       mode: {{in: Mode}}
-    port_region: {{period: 10 ms, wcet: 20 us}}
+    port_region: {{period: 10 ms, wcet: 20 us{groups}}}
     events: {events}
     data:
       count: {{type: Level, initial: 0}}
@@ -68,6 +68,7 @@ def model(
     rows: str | None = None,
     others: str = "",
     more: str = "",
+    groups: str = "",
 ) -> System:
     """The system of a valid model with these regions."""
     named = [text.partition(":")[0] for text in regions]
@@ -79,6 +80,7 @@ def model(
         rows=rows or ", ".join(["one.ports", *(f"one.{name}" for name in named)]),
         outside=outside,
         others=indent(others, " " * 2),
+        groups=f", groups: {groups}" if groups else "",
     )
     result = loaded(text)
     assert result.system is not None, "\n".join(str(d) for d in result.diagnostics)

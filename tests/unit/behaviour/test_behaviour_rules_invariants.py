@@ -101,3 +101,21 @@ def test_flag_that_goes_with_a_state_is_proved() -> None:
     assert not said(model(region("Main", states % "true", transitions), never=never))
     found = only(model(region("Main", states % "level > 3", transitions), never=never))
     assert found.code == "RV-1108"
+
+
+@pytest.mark.parametrize(("period", "code"), [("10 ms", "RV-1108"), ("40 ms", "RV-1109")])
+def test_a_value_stays_for_the_period_of_the_group_that_has_its_port(
+    period: str, code: str
+) -> None:
+    """`level` is another one 40 ms later at the earliest, when Watch has left A."""
+    transitions = "up: {from: A, to: B, when: level = 1}\non: {from: B, to: C, when: level = 2}"
+    main = region("Main", "{A: {}, B: {}, C: {}}", transitions)
+    watch = region("Watch", "{A: {}, B: {}}", "go: {from: A, to: B, after: 30 ms}")
+    system = model(
+        main,
+        watch,
+        never='{soon: "in(Main.C) and in(Watch.A)"}',
+        groups=f"{{slow: {{period: {period}, wcet: 20 us, ports: [level]}}}}",
+        rows="one.ports, one.slow, one.Main, one.Watch",
+    )
+    assert only(system).code == code

@@ -20,6 +20,7 @@ LAYOUTS = ROOT / "tests" / "feature" / "flexible" / "model.yaml"
 LOGICAL = ROOT / "tests" / "feature" / "logical" / "model.yaml"
 CALLED = ROOT / "tests" / "feature" / "called" / "model.yaml"
 RAISED = ROOT / "tests" / "feature" / "raised" / "model.yaml"
+GROUPED = ROOT / "tests" / "feature" / "grouped" / "model.yaml"
 NESTED = ROOT / "tests" / "feature" / "composites" / "model.yaml"
 
 
@@ -28,7 +29,7 @@ def _symbols(path: Path) -> list[ModelSymbol]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED, LOGICAL, RAISED])
+@pytest.mark.parametrize("path", [TWO_NODES, LAYOUTS, NESTED, LOGICAL, RAISED, GROUPED])
 def test_every_name_that_is_declared_can_be_changed(path: Path) -> None:
     now = model(path, {})
     symbols = _symbols(path)
