@@ -83,7 +83,7 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
     begin, *others = _stages(chain, system, seen)
     first = [start for start in begin.times if start >= seen.ready]
     last = seen.executions.get(str(chain.way[-1]), 0)
-    from_release = chain.of_call or isinstance(chain.way[0], Carried)
+    from_release = chain.of_call or isinstance(chain.way[0], Carried) or _is_awaited(chain, system)
     origins = first if from_release else (None, *first)
     found = []
     for origin, start in zip(origins, first, strict=False):
@@ -91,6 +91,13 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
         if origin is not None and end is not None:
             found.append(end + last - origin)
     return found
+
+
+def _is_awaited(chain: Chain, system: System) -> bool:
+    """Whether what the chain begins with releases its first row, so that it waits for no period."""
+    first = str(chain.way[0])
+    rows = {slot.element: one for one in system.processors for slot in one.slots}
+    return first in rows and rows[first].released_by_interrupt is not None
 
 
 def _end(start: int, stages: Sequence[Stage]) -> int | None:

@@ -38,6 +38,8 @@ FRAMES = ROOT / "spark_runtime" / "frames.toml"
 ENDINGS = frozenset({"__gnat_last_chance_handler"})
 ATTACHING = "system__interrupts__install_restricted_handlers"
 """The procedure that attaches interrupt handlers. The call graph does not name the handlers."""
+LINES = "ravenchart-interrupt_sources.adb"
+"""The unit that attaches those of the runtime, which `pointers` of a target names."""
 PUT_ALL = "ravenchart_put_all"
 """By this name the runtime of this machine calls the report of a program, for its snapshots."""
 SAFE = 1_024
@@ -411,7 +413,9 @@ def _problems(made: BuiltProgram, depths: Depths) -> Iterator[Diagnostic]:
     for title in depths.graph:
         function = depths.graph[title]
         attached = next((c for c in function.calls if c.startswith(ATTACHING)), None)
-        if attached and function.place and made.target.facts.stacks.interrupts is not None:
+        if attached is None or LINES in function.calls[attached]:
+            continue
+        if function.place and made.target.facts.stacks.interrupts is not None:
             yield error(
                 "RV-1503", _origin(function.calls[attached]) or unknown,
                 f"{graph.ada_name(function.name)} attaches a handler of an interrupt; which "

@@ -286,3 +286,57 @@ def test_two_boards_run_without_a_scenario(
     printed = run("two_nodes", tmp_path, capsys, "1")
     assert "verdict: PASS\n" in printed
     assert "servo.Drive         Standing, Following" in printed
+
+
+KICKER = """\
+with Interfaces;
+with System.Storage_Elements;
+
+package body Interrupts_Feature.Kicker_Type.Activities
+with SPARK_Mode => Off
+is
+   Pending : Interfaces.Unsigned_32
+   with
+     Volatile,
+     Address => System.Storage_Elements.To_Address (16#F901_020C#);
+   --  Writing a one makes an interrupt pending: 96 is that of bit 0 (GIC-400,
+   --  GICD_ISPENDR3).
+
+   procedure Kick is
+   begin
+      Pending := 16#0600_0000#;
+   end Kick;
+end Interrupts_Feature.Kicker_Type.Activities;
+"""
+
+
+def test_interrupts_release_processors_within_their_bounds_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An activity makes both interrupts of the feature pending, every 60 ms."""
+    home = tmp_path / "interrupts"
+    shutil.copytree(ROOT / "tests" / "feature" / "interrupts", home)
+    model = home / "model.yaml"
+    text = model.read_text(encoding="utf-8")
+    for old, new in (
+        (
+            "\nnodes:\n",
+            "  Kicker_Type:\n    activities:\n"
+            "      kick: {period: 60 ms, wcet: 20 us, body: user}\n\nnodes:\n",
+        ),
+        ("instances:\n", "instances:\n  kicker: {component: Kicker_Type, node: board}\n"),
+        ("processors:\n", "processors:\n  kicking: {stack: 16 KiB, activities: [kicker.kick]}\n"),
+    ):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    model.write_text(text, encoding="utf-8")
+    (home / "user").mkdir()
+    body = home / "user" / "interrupts_feature-kicker_type-activities.adb"
+    body.write_text(KICKER, encoding="utf-8")
+    words = ["run", str(model), "--target", BOARD, "--seconds", "2"]
+    assert command_line.main([*words, "--report", str(tmp_path / "report")]) == 0
+    printed = capsys.readouterr().out
+    observed = {name: int(releases) for name, releases in OBSERVED.findall(printed)}
+    assert {observed[name] for name in ("limiting", "turning")} == {34}
+    assert re.search(r"^stopped +34 .* ok$", printed, re.M)
+    assert "verdict: PASS" in printed

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.system.journeys import journeys
 from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.behaviour.interpreter.machine import Machine
@@ -78,6 +79,9 @@ def test_each_signal_releases_its_processor_once_and_one_that_is_too_soon_is_cou
     assert seen.processors["turning"].releases == 5
     assert seen.faults["Queue_Overflow"] == 1
     assert [r.text for r in seen.of("transition", "guard.Watch")] == ["hold", "free"] * 2 + ["hold"]
+    (stopped,) = journeys(analyse(checked.system), seen)
+    assert stopped.count == 5
+    assert stopped.observed < 40_000_000  # from its own signal, and not from the one before
 
 
 def test_an_interrupt_counts_above_all_tasks_with_the_separation_of_its_processor(
