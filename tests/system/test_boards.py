@@ -17,13 +17,16 @@ from pathlib import Path
 import pytest
 
 from ravenchart import command_line
+from ravenchart.analysis.system.observed import read_map, read_trace
 from ravenchart.building import checking, programs, stacks, targets
+from ravenchart.commands.simulate import interpreted
 from ravenchart.failures import Unusable
 from ravenchart.paths import ROOT
 from ravenchart.running import boards
 from ravenchart.stacks import symbols
 from ravenchart.tools import toolchain
 from tests.support import board_stacks
+from tests.support.interpreted import stimuli_of, system_of
 
 EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
 BOARD = "zynqmp"
@@ -340,3 +343,25 @@ def test_interrupts_release_processors_within_their_bounds_on_the_board(
     assert {observed[name] for name in ("limiting", "turning")} == {34}
     assert re.search(r"^stopped +34 .* ok$", printed, re.M)
     assert "verdict: PASS" in printed
+
+
+def test_logical_execution_times_give_the_values_of_the_simulation_on_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = tmp_path / "logical"
+    shutil.copytree(ROOT / "tests" / "feature" / "logical", home)
+    report = tmp_path / "report"
+    words = ["run", str(home / "model.yaml"), "--target", BOARD, "--seconds", "2"]
+    assert command_line.main([*words, "--report", str(report)]) == 0
+    assert "verdict: PASS" in capsys.readouterr().out
+    names = read_map((home / "generated" / "trace.json").read_text(encoding="utf-8"))
+    seen = read_trace((report / "trace.txt").read_text(encoding="ascii").splitlines(), names)
+    assert seen.values_lost == 0
+    system = system_of((home / "model.yaml").read_text(encoding="utf-8"))
+    wanted = interpreted(system, stimuli_of("- {until: 3 s}", system)).values
+    elements = {one.element.name for one in seen.values}
+    assert elements == {one.element for one in wanted}
+    for element in elements:
+        found = [one.value for one in seen.values if one.element.name == element]
+        same = [one.value for one in wanted if one.element == element]
+        assert len(found) >= 90 and found == same[: len(found)], element
