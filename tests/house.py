@@ -60,6 +60,8 @@ MODELS = {
 DRIVERS = tuple(variants.DRIVER_FOLDERS)
 PROVED_WITH = {"bus": ("protocol",)}
 """Folders of hw_can/ that only this driver uses, though every project has them."""
+UNITS_PROVED_WITH = {"ctucanfd": ("ravenchart-can-transmit_orders.adb",)}
+"""Units of the same kind."""
 GENERIC_BODIES = {
     "ravenchart-can-connections.adb",
     "ravenchart-can-controllers-driver.adb",
@@ -265,7 +267,11 @@ def _runtime(driver: str) -> Target:
         whole=True,
         units=()
         if driver == DRIVERS[0]
-        else (*sorted((bodies | specs) - GENERIC_BODIES), *INSTANCES),
+        else (
+            *sorted((bodies | specs) - GENERIC_BODIES),
+            *UNITS_PROVED_WITH.get(driver, ()),
+            *INSTANCES,
+        ),
     )
     return Target(f"runtime-{driver}", task)
 

@@ -40,7 +40,7 @@ package body Ctu_Pair is
         (100_000_000, 2_000_000, Registers.Data_Quanta, Timing, Found);
       Write (Registers.Btr_Fd, Registers.Btr_Of (Timing));
       Write (Registers.Mode_Settings, Registers.Fd_Mode);
-      Write (Registers.Tx_Priority, Registers.Priorities (1));
+      Write (Registers.Tx_Priority, Registers.Priorities (4, 3, 2, 1));
       Good := Good and then Found;
    end Start;
 

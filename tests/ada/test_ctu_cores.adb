@@ -9,6 +9,8 @@ with Ctu_Pair;
 with Facts;
 with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Arbitration;
+with Ravenchart.Can.Ctu_Buffers;
 with Ravenchart.Can.Ctu_Frames;
 with Ravenchart.Can.Ctu_Registers;
 with Ravenchart.Can.Fd_Frames;
@@ -38,7 +40,7 @@ procedure Test_Ctu_Cores is
    --  Classic frames of each length.
 
    procedure Check_Order;
-   --  The four buffers, ready at once, are sent from the oldest on.
+   --  The four buffers, ready at once, are sent in the order of their line.
 
    -----------
    -- Cross --
@@ -110,30 +112,32 @@ procedure Test_Ctu_Cores is
    -----------------
 
    procedure Check_Order is
-      Slot  : Registers.Buffer;
-      Order : Registers.Word;
-      I     : Image;
-      Here  : Boolean;
-      Good  : Boolean := True;
+      Line     : Ctu_Buffers.Line;
+      Slot     : Registers.Buffer;
+      Rank     : Identifier;
+      All_Four : Registers.Word;
+      I        : Image;
+      Here     : Boolean;
+      Good     : Boolean := True;
    begin
-      for Oldest in Registers.Buffer loop
-         Near.Write
-           (Registers.Tx_Priority, Registers.Priorities (Oldest));
-         Slot  := Oldest;
-         Order := 0;
-         for Nth in 1 .. Identifier (4) loop
+      for Turn in Identifier range 1 .. 4 loop
+         Line     := (others => <>);
+         All_Four := 0;
+         for Nth in Identifier range 1 .. 4 loop
+            Rank := (Nth + Turn) mod 4;
+            Ctu_Buffers.Put (Line, Arbitration.Rank (Rank), Slot);
             Near.Write_Frame
-              (Slot, Image_Of (Data_Frame (16#40# - Nth, Base, 0, 0)));
-            Order := Order or Registers.Set_Ready (Slot);
-            Slot  := Registers.Next (Slot);
+              (Slot, Image_Of (Data_Frame (16#40# - Rank, Base, 0, 0)));
+            All_Four := All_Four or Registers.Set_Ready (Slot);
          end loop;
-         Near.Write (Registers.Tx_Command, Order);
-         for Nth in 1 .. Identifier (4) loop
+         Near.Write (Registers.Tx_Priority, Ctu_Buffers.Priorities (Line));
+         Near.Write (Registers.Tx_Command, All_Four);
+         for Nth in 0 .. Identifier (3) loop
             Ctu_Pair.Come (I, Here);
             Good := Good and then Here and then Id_Of (I) = 16#40# - Nth;
          end loop;
       end loop;
-      Facts.Check ("four buffers are sent from the oldest on", Good);
+      Facts.Check ("four buffers are sent in the order of the line", Good);
    end Check_Order;
 
    Opened, Other, Good, Right : Boolean;

@@ -7,6 +7,9 @@
 with Facts;
 with Interfaces;
 with Ravenchart.Can;
+with Ravenchart.Can.Any_Frames;
+with Ravenchart.Can.Arbitration;
+with Ravenchart.Can.Ctu_Buffers;
 with Ravenchart.Can.Ctu_Frames;
 with Ravenchart.Can.Ctu_Registers;
 with Ravenchart.Can.Fd_Frames;
@@ -17,7 +20,9 @@ procedure Test_Ctu_Frames is
    use Ravenchart.Can.Fd_Frames;
    use type Interfaces.Unsigned_32;
    use type Interfaces.Unsigned_64;
+   use type Arbitration.Rank;
    use type Ctu_Registers.Bit_Timing;
+   use type Ctu_Registers.Buffer;
    use type Ctu_Registers.Hertz;
 
    package Registers renames Ctu_Registers;
@@ -29,6 +34,8 @@ procedure Test_Ctu_Frames is
 
    type Frame_List is array (Positive range <>) of Frame;
 
+   type Word_List is array (Positive range <>) of Interfaces.Unsigned_32;
+
    type Rate_List is array (Positive range <>) of Registers.Hertz;
 
    procedure Check_Lengths;
@@ -38,6 +45,8 @@ procedure Test_Ctu_Frames is
    procedure Check_Any_Words;
 
    procedure Check_Registers;
+
+   procedure Check_Order;
 
    procedure Check_Timing;
 
@@ -162,7 +171,6 @@ procedure Test_Ctu_Frames is
    ---------------------
 
    procedure Check_Registers is
-      Good : Boolean := True;
    begin
       Facts.Check
         ("a core is known by its name, and its absence too",
@@ -180,24 +188,69 @@ procedure Test_Ctu_Frames is
          Registers.Receive_Errors (16#0100_0007#) = 7
          and then Registers.Transmit_Errors (16#0100_0007#) = 256
          and then Registers.Transmit_Errors (16#FFFF_FFFF#) = 256);
-      for Oldest in Registers.Buffer loop
-         declare
-            Slot : Registers.Buffer := Oldest;
-            Last : Interfaces.Unsigned_32 := 5;
-            Mine : Interfaces.Unsigned_32;
-         begin
-            for Nth in 1 .. 4 loop
-               Mine := Interfaces.Shift_Right
-                 (Registers.Priorities (Oldest), 4 * (Natural (Slot) - 1))
-                 and 7;
-               Good := Good and then Mine in 1 .. Last - 1;
-               Last := Mine;
-               Slot := Registers.Next (Slot);
-            end loop;
-         end;
-      end loop;
-      Facts.Check ("priorities fall along the ring, and none is 0", Good);
+      Facts.Check
+        ("each buffer has a priority of its own",
+         Registers.Priorities (4, 3, 2, 1) = 16#1234#
+         and then Registers.Priority_Of (16#4123#, 1) = 3
+         and then Registers.Priority_Of (16#4123#, 4) = 4);
    end Check_Registers;
+
+   -----------------
+   -- Check_Order --
+   -----------------
+
+   procedure Check_Order is
+      Line : Ctu_Buffers.Line;
+      Slot : Registers.Buffer;
+      Good : Boolean := True;
+
+      procedure Put (Rank : Arbitration.Rank; Wanted : Interfaces.Unsigned_32);
+      --  Put a frame of this rank, after which TX_PRIORITY is Wanted.
+
+      procedure Put (Rank : Arbitration.Rank; Wanted : Interfaces.Unsigned_32)
+      is
+      begin
+         Ctu_Buffers.Put (Line, Rank, Slot);
+         Good := Good and then Ctu_Buffers.Priorities (Line) = Wanted;
+      end Put;
+
+      function Urgency
+        (Id     : Identifier;
+         Format : Frame_Format;
+         Kind   : Frame_Kind := Data) return Arbitration.Rank
+      is (Ctu_Buffers.Urgency
+            (Any_Frames.To_Any
+               (Frame'(Id => Id, Format => Format, Kind => Kind,
+                       others => <>))));
+   begin
+      for Nth in 1 .. 4 loop
+         Put (0, 16#1234#);
+      end loop;
+      for Wanted of Word_List'(16#2341#, 16#3412#, 16#4123#, 16#1234#) loop
+         Ctu_Buffers.Remove (Line, 1);
+         Put (0, Wanted);
+      end loop;
+      Facts.Check ("frames of one rank go along the ring of buffers", Good);
+
+      Good := True;
+      Line := (others => <>);
+      Put (70, 16#1234#);
+      Put (50, 16#1243#);
+      Put (50, 16#1342#);
+      Put (10, 16#4231#);
+      Facts.Check ("the lower rank has the higher priority", Good);
+
+      Ctu_Buffers.Remove (Line, 4);
+      Put (20, 16#4123#);
+      Facts.Check
+        ("the buffer of a frame that has gone takes one between others",
+         Good and then Slot = 1);
+      Facts.Check
+        ("a standard frame is more urgent than an extended one with its base",
+         Urgency (5, Base, Data) < Urgency (5, Base, Remote)
+         and then Urgency (5, Base, Remote) < Urgency (5 * 2**18, Extended)
+         and then Urgency (5 * 2**18, Extended) < Urgency (6, Base));
+   end Check_Order;
 
    ------------------
    -- Check_Timing --
@@ -268,6 +321,7 @@ begin
    Check_Words;
    Check_Any_Words;
    Check_Registers;
+   Check_Order;
    Check_Timing;
    Facts.Finish;
 end Test_Ctu_Frames;

@@ -3,27 +3,34 @@
 
 --  Driver "ctucanfd": a CTU CAN FD core by its registers, without the kernel.
 --
---  Guarantees   frames go to the bus in the order sent, whatever their
---               identifiers; a frame that does not fit is counted
---  Tasking      one task, which looks at the core every millisecond
---  Timing       bounded: at each look at most Frames_At_Once frames are
---               received and four sent
+--  Guarantees   frames go to the bus in the order sent, or by priority where
+--               Transmit_Orders says so; a frame that does not fit is counted
+--  Tasking      a task that serves the core, when a frame was sent and every
+--               millisecond, for which another task wakes it
+--  Timing       bounded: at most Frames_At_Once frames are received each
+--               millisecond, and four sent at once
 --  Assumptions  ASM-013, the core is where Ctu_Hosts puts it
 --
 --  The core filters nothing, since Accepts does. It must have four transmit
---  buffers. When the core disappears, the state is Stopped and sent frames are
---  lost; the driver looks for it every second.
+--  buffers. A frame that was sent gets a free one at once. Before each attempt
+--  the core selects the buffer of the highest priority anew. By priority no
+--  frame waits for a less urgent one of its node that has not begun, as long
+--  as four frames at most wait. When the core disappears, the state is Stopped
+--  and sent frames are lost; the driver looks for it every second.
 
 with Ada.Real_Time;
 with Ravenchart.Epochs;
+with Ravenchart.Can.Arbitration;
+with Ravenchart.Can.Ctu_Buffers;
 with Ravenchart.Can.Ctu_Core;
 with Ravenchart.Can.Ctu_Frames;
 with Ravenchart.Can.Ctu_Hosts;
 with Ravenchart.Can.Ctu_Registers;
+with Ravenchart.Can.Transmit_Orders;
 
 separate (Ravenchart.Can.Controllers)
 package body Driver is
-   pragma Refined_State ((State => Poller));
+   pragma Refined_State ((State => (Is_Due, Ticker, Server)));
    pragma Compile_Time_Error
      (Bus_Number /= 1, "the driver ctucanfd has the controller of one bus");
 
@@ -37,6 +44,10 @@ package body Driver is
    --  More than the 21 frames that a bus of 1 Mbit/s carries in a millisecond.
 
    Looks_A_Second : constant := 1_000;
+
+   Is_Due : Boolean := False
+   with Atomic;
+   --  True when a millisecond has passed since the last look.
 
    Nominal : constant Registers.Hertz := Registers.Hertz (Setting.Bit_Rate);
 
@@ -54,19 +65,21 @@ package body Driver is
       Retry_In : Look_Count := 0;
       State    : Controller_State := Stopped;
       Rescued  : Boolean := False;
-      Oldest   : Registers.Buffer := 1;
-      Pending  : Natural range 0 .. 4 := 0;
+      Buffers  : Ctu_Buffers.Line;
    end record;
    --  Retry_In: looks until the next search for a core, or the next request
    --  for recovery. State: the state of the core at the last look. Rescued:
-   --  recovery was requested since bus-off. Pending: the buffers that wait to
-   --  be sent, from Oldest on.
+   --  recovery was requested since bus-off. Buffers: the frames in the core.
 
    pragma Warnings
      (GNATprove, Off, "pragma ""Storage_Size"" ignored*",
       Reason => "ASM-004, stack use is not a matter of proof");
 
-   task Poller
+   task Ticker
+   with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
+   --  Wakes the server every millisecond.
+
+   task Server
    with Priority => Driver_Priority, Storage_Size => Stack_Bytes;
    --  Serves the core.
 
@@ -98,17 +111,34 @@ package body Driver is
         Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
    --  Receive the frames that have come.
 
-   procedure Send_Frames (P : in out Progress)
-   with
-     Global => (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up));
-   --  Note the frames that were sent, and fill the buffers again.
+   procedure Note_Sent (P : in out Progress)
+   with Global => (In_Out => (Ctu_Core.Registers, Upper.State));
+   --  Note the frames that were sent.
 
-   procedure Serve (P : in out Progress)
+   procedure Send_Frames (P : in out Progress)
    with
      Global =>
        (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up),
-        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time));
-   --  One look at a core that runs.
+        Input  => Transmit_Orders.State);
+   --  Fill the free buffers.
+
+   procedure Serve (P : in out Progress; Looks : Boolean)
+   with
+     Global =>
+       (In_Out => (Ctu_Core.Registers, Upper.State, Upper.Wake_Up),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time,
+                   Transmit_Orders.State));
+   --  Send what waits on a core that runs. Looks: see to its state and to the
+   --  frames that have come, too.
+
+   procedure Look (P : in out Progress)
+   with
+     Global =>
+       (In_Out => (Ctu_Core.Registers, Ctu_Hosts.Console, Upper.State,
+                   Upper.Wake_Up),
+        Input  => (Epochs.Start, Ada.Real_Time.Clock_Time,
+                   Transmit_Orders.State));
+   --  The work of every millisecond.
 
    -------------
    -- Give_Up --
@@ -243,41 +273,55 @@ package body Driver is
       end if;
    end Receive_Frames;
 
+   ---------------
+   -- Note_Sent --
+   ---------------
+
+   procedure Note_Sent (P : in out Progress) is
+      States : Registers.Word;
+      Nth    : Positive := 1;
+      Slot   : Registers.Buffer;
+   begin
+      Ctu_Core.Read (Registers.Tx_Status, States);
+      for Unused in Ctu_Buffers.Place loop
+         exit when Nth > P.Buffers.Waiting;
+         Slot := P.Buffers.Buffers (Nth);
+         if Registers.Is_Done (States, Slot) then
+            if Registers.State_Of (States, Slot) = Registers.Sent then
+               Upper.Count (Upper.Sent);
+            else
+               Upper.Count (Upper.Lost_Out);
+            end if;
+            Ctu_Buffers.Remove (P.Buffers, Nth);
+         else
+            Nth := Nth + 1;
+         end if;
+      end loop;
+   end Note_Sent;
+
    -----------------
    -- Send_Frames --
    -----------------
 
    procedure Send_Frames (P : in out Progress) is
-      Buffers : Registers.Word;
-      Slot    : Registers.Buffer;
       F       : Any_Frames.Any_Frame;
       Status  : Queueing.Take_Status;
+      Ordered : Boolean;
+      Rank    : Arbitration.Rank;
+      Slot    : Registers.Buffer;
    begin
-      Ctu_Core.Read (Registers.Tx_Status, Buffers);
-      for Nth in Registers.Buffer loop
-         exit when P.Pending = 0
-           or else not Registers.Is_Done (Buffers, P.Oldest);
-         if Registers.State_Of (Buffers, P.Oldest) = Registers.Sent then
-            Upper.Count (Upper.Sent);
-         else
-            Upper.Count (Upper.Lost_Out);
-         end if;
-         P.Oldest  := Registers.Next (P.Oldest);
-         P.Pending := P.Pending - 1;
-      end loop;
-      Ctu_Core.Write
-        (Registers.Tx_Priority, Registers.Priorities (P.Oldest));
-      Slot := P.Oldest;
-      for Nth in Registers.Buffer loop
-         if Natural (Nth) > P.Pending then
-            Upper.Take_Queued (F, Status);
-            exit when Status = Queueing.Empty;
-            Ctu_Core.Write_Frame (Slot, Ctu_Frames.Image_Of (F));
-            Ctu_Core.Write
-              (Registers.Tx_Command, Registers.Set_Ready (Slot));
-            P.Pending := Natural (Nth);
-         end if;
-         Slot := Registers.Next (Slot);
+      for Nth in Ctu_Buffers.Place loop
+         exit when P.Buffers.Waiting = Ctu_Buffers.Room;
+         Upper.Take_Queued (F, Status);
+         exit when Status = Queueing.Empty;
+         Transmit_Orders.Read (Bus_Number, Ordered);
+         Rank := (if Ordered then Ctu_Buffers.Urgency (F) else 0);
+         Ctu_Buffers.Put (P.Buffers, Rank, Slot);
+         Ctu_Core.Write_Frame (Slot, Ctu_Frames.Image_Of (F));
+         Ctu_Core.Write
+           (Registers.Tx_Priority, Ctu_Buffers.Priorities (P.Buffers));
+         --  Those that are ready keep their order.
+         Ctu_Core.Write (Registers.Tx_Command, Registers.Set_Ready (Slot));
       end loop;
    end Send_Frames;
 
@@ -285,48 +329,81 @@ package body Driver is
    -- Serve --
    -----------
 
-   procedure Serve (P : in out Progress) is
+   procedure Serve (P : in out Progress; Looks : Boolean) is
       Id : Registers.Word;
    begin
       Ctu_Core.Read (Registers.Device_Id_Version, Id);
       if Registers.Is_Core (Id) then
-         Note_Errors (P);
-         Receive_Frames;
+         if Looks then
+            Note_Errors (P);
+            Receive_Frames;
+         end if;
+         Note_Sent (P);
          Send_Frames (P);
       else
          Upper.Note (Stopped);
-         Upper.Count (Upper.Lost_Out, By => Event_Count (P.Pending));
+         Upper.Count
+           (Upper.Lost_Out, By => Event_Count (P.Buffers.Waiting));
          P := (others => <>);
       end if;
    end Serve;
 
+   ----------
+   -- Look --
+   ----------
+
+   procedure Look (P : in out Progress) is
+   begin
+      case P.Core is
+         when Absent =>
+            Give_Up;
+            if P.Retry_In = 0 then
+               Look_For (P);
+            else
+               P.Retry_In := P.Retry_In - 1;
+            end if;
+         when In_Reset =>
+            Configure (P);
+         when Running =>
+            Serve (P, Looks => True);
+      end case;
+   end Look;
+
    ------------
-   -- Poller --
+   -- Ticker --
    ------------
 
-   task body Poller is
+   task body Ticker is
       Due : Ada.Real_Time.Time := Epochs.Start;
       --  Wait for Start: a frame that came before the processors run would
       --  find no reader.
-      P   : Progress;
    begin
       loop
          delay until Due;
-         case P.Core is
-            when Absent =>
-               Give_Up;
-               if P.Retry_In = 0 then
-                  Look_For (P);
-               else
-                  P.Retry_In := P.Retry_In - 1;
-               end if;
-            when In_Reset =>
-               Configure (P);
-            when Running =>
-               Serve (P);
-         end case;
+         Is_Due := True;
+         Upper.Wake;
          Due := Due + Ada.Real_Time.Milliseconds (1);
       end loop;
-   end Poller;
+   end Ticker;
+
+   ------------
+   -- Server --
+   ------------
+
+   task body Server is
+      P     : Progress;
+      Looks : Boolean;
+   begin
+      loop
+         Upper.Wait_Work;
+         Looks := Is_Due;
+         if Looks then
+            Is_Due := False;
+            Look (P);
+         elsif P.Core = Running then
+            Serve (P, Looks => False);
+         end if;
+      end loop;
+   end Server;
 
 end Driver;

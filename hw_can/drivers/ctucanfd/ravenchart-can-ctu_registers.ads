@@ -111,11 +111,6 @@ is
    type Buffer is range 1 .. 4;
    --  TXT buffers that the driver uses; a core has two to eight.
 
-   function Next (B : Buffer) return Buffer
-   is (if B = Buffer'Last then Buffer'First else B + 1)
-   with Global => null;
-   --  The buffers in a ring.
-
    subtype Frame_Word is Register range 0 .. 19;
    --  A word of a frame, in a transmit buffer.
 
@@ -154,16 +149,29 @@ is
    with Global => null;
    --  TX_COMMAND: TXCR for B.
 
-   function Priorities (Oldest : Buffer) return Word
-   is (case Oldest is
-         when 1 => 16#1234#,
-         when 2 => 16#2341#,
-         when 3 => 16#3412#,
-         when 4 => 16#4123#)
+   subtype Level is Word range 1 .. 4;
+   --  A priority of a buffer: of those that are ready, the core sends the one
+   --  with the highest. None is 0: in QEMU's model such a buffer is never
+   --  sent.
+
+   function Priority_Of (Tx_Priority : Word; B : Buffer) return Word
+   is (Interfaces.Shift_Right (Tx_Priority, 4 * (Natural (B) - 1)) and 16#F#)
    with Global => null;
-   --  TX_PRIORITY by which the buffers are sent in the order of the ring,
-   --  Oldest first: four bits for each, TXT1P lowest. None is 0: in QEMU's
-   --  model a buffer of priority 0 is never sent.
+   --  The priority of B: four bits for each, TXT1P lowest.
+
+   function Priorities (Of_1, Of_2, Of_3, Of_4 : Level) return Word
+   is (Of_1
+       or Interfaces.Shift_Left (Of_2, 4)
+       or Interfaces.Shift_Left (Of_3, 8)
+       or Interfaces.Shift_Left (Of_4, 12))
+   with
+     Global => null,
+     Post   =>
+       Priority_Of (Priorities'Result, 1) = Of_1
+       and then Priority_Of (Priorities'Result, 2) = Of_2
+       and then Priority_Of (Priorities'Result, 3) = Of_3
+       and then Priority_Of (Priorities'Result, 4) = Of_4;
+   --  TX_PRIORITY with these priorities of the buffers.
 
    --  Bit timing
 
