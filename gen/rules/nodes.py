@@ -12,6 +12,7 @@ from ravenchart.gen.derive.remote import is_across, obstacle
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Device, Remote
 from ravenchart.gen.model.system import System
 from ravenchart.gen.origins import Origin
@@ -163,6 +164,11 @@ def _home(system: System, device: Device) -> str | None:
     return system.instance(rows[0].instance).node if rows else None
 
 
+def sent_by(system: System, node: str, bus: Bus) -> list[Message]:
+    """The messages that a node sends on a bus."""
+    return [m for m in system.messages if m.bus == bus.name and system.sender(m) == node]
+
+
 def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
     """By priority, each message that a node sends has a transmit buffer for itself."""
     system = resolved.system
@@ -176,7 +182,7 @@ def buffers_hold_what_is_sent(resolved: Resolved) -> Iterator[Diagnostic]:
             yield error(ROOM, bus.origin, text, hint=hint)
         sent = [m for m in system.messages if m.bus == bus.name and m.source is not None]
         for node in system.nodes:
-            own = [m for m in sent if system.sender(m) == node.name]
+            own = sent_by(system, node.name, bus)
             if len(own) > bus.transmit_depth:
                 text = f"{node.name} sends {len(own)} messages on {bus.name}, but its controller"
                 text += f" has {bus.transmit_depth} transmit buffers by priority"

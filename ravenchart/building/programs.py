@@ -24,6 +24,7 @@ from ravenchart.gen.emit.program import (
     source_folders,
 )
 from ravenchart.gen.model.system import System
+from ravenchart.gen.rules.nodes import BUFFERS, sent_by
 from ravenchart.paths import ROOT, work
 from ravenchart.proof import ages
 from ravenchart.proof.proving import TERMINATION, ProofTask
@@ -353,8 +354,8 @@ NO_FD = ("xilinx",)
 """Drivers of controllers that have no CAN FD."""
 ONE_BUS = ("ctucanfd", "xilinx")
 """Drivers that have the controller of one bus of a node."""
-BY_PRIORITY = ("loopback", "bus")
-"""Drivers behind which a controller can offer the most urgent of its frames."""
+BY_PRIORITY = {"loopback": BUFFERS, "bus": BUFFERS, "ctucanfd": 4}
+"""Drivers with transmit buffers by priority, and the number of these."""
 
 
 def _by_priority(checked: Checked) -> str | None:
@@ -385,10 +386,27 @@ def check_driver(checked: Checked, driver: str, target: targets.Target | None = 
                 f"ravenchart: error: the driver {driver} has the controller of one bus, and "
                 f"{node.name} is on {' and '.join(buses)}"
             )
-    bus = _by_priority(checked)
-    if bus is not None and driver not in BY_PRIORITY:
-        raise Refused(
-            f"ravenchart: error: the driver {driver} sends frames in the order in which they come, "
-            f"and {bus} has `buffers: priority`\n  hint: take one of "
-            f"{', '.join(BY_PRIORITY)}, or write `buffers: fifo`"
-        )
+    _check_buffers(checked, driver, target)
+
+
+def _check_buffers(checked: Checked, driver: str, target: targets.Target | None) -> None:
+    """Refused where a bus is by priority, and the driver has no buffer for each message."""
+    system = checked.system
+    for bus in (one for one in system.buses if one.by_priority):
+        if driver not in BY_PRIORITY:
+            known = [one for one in BY_PRIORITY if target is None or one in target.facts.drivers]
+            raise Refused(
+                f"ravenchart: error: the driver {driver} sends frames in the order in which they "
+                f"come, and {bus.name} has `buffers: priority`\n  hint: take one of "
+                f"{', '.join(known)}, or write `buffers: fifo`"
+            )
+        room = BY_PRIORITY[driver]
+        for node in system.nodes:
+            sent = len(sent_by(system, node.name, bus))
+            if sent > room:
+                raise Refused(
+                    f"ravenchart: error: {node.name} sends {sent} messages on {bus.name}, which "
+                    f"has `buffers: priority`, but the driver {driver} has {room} transmit "
+                    f"buffers\n  hint: take another driver, send at most {room} messages, or write "
+                    "`buffers: fifo`"
+                )

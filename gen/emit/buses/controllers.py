@@ -17,10 +17,13 @@ from ravenchart.gen.emit.ada.expressions import (
     record,
 )
 from ravenchart.gen.emit.ada.named import ref
-from ravenchart.gen.emit.ada.statements import Pragma
+from ravenchart.gen.emit.ada.statements import Pragma, Stmt, do
 from ravenchart.gen.emit.certificate.certified import agrees, driver_element, fact
 from ravenchart.gen.model.buses import Bus
 from ravenchart.gen.model.system import System
+
+ORDERS = "Ravenchart.Can.Transmit_Orders"
+"""The package of the runtime by which a driver knows the order of a bus."""
 
 
 def controller_checks(bus: Bus) -> list[Decl]:
@@ -44,11 +47,24 @@ def _rates(bus: Bus) -> dict[str, Expr]:
     }
 
 
+def bus_number(system: System, bus: Bus) -> Expr:
+    """The place of a bus among those of the program."""
+    return number([one.name for one in system.buses].index(bus.name) + 1)
+
+
+def orders_by_priority(system: System) -> list[Stmt]:
+    """The calls that set the buses whose transmit buffers are by priority."""
+    return [
+        do(ref(ORDERS, "Set_By_Priority"), bus_number(system, bus))
+        for bus in system.buses
+        if bus.by_priority
+    ]
+
+
 def bus_place(system: System, bus: Bus) -> dict[str, Expr]:
     """The place of a bus among those of the program, and its name in the environment."""
-    names = [one.name for one in system.buses]
     return {
-        "Bus_Number": number(names.index(bus.name) + 1),
+        "Bus_Number": bus_number(system, bus),
         "Bus_Name": StringLiteral(bus.name.upper()),
     }
 

@@ -44,6 +44,7 @@ from ravenchart.gen.emit.ada.statements import (
     Stmt,
     do,
 )
+from ravenchart.gen.emit.buses.controllers import ORDERS, orders_by_priority
 from ravenchart.gen.emit.certificate.certified import CERTIFICATE
 from ravenchart.gen.emit.commands.lifecycle import UNIT as LIFECYCLE
 from ravenchart.gen.emit.commands.lifecycle import has_lifecycle
@@ -298,7 +299,9 @@ def emit_main(system: System, header: str) -> Unit:
     begins = has_lifecycle(system)
     started = (do(ref(root, LIFECYCLE, "Start_All"), ref("Started")),) if begins else ()
     ended = OperatorChain("or else", (ref("Stop"), Prefix("not", ref("Started"))))
+    ordered = orders_by_priority(system)
     body: list[Stmt] = [
+        *ordered,
         do("Ravenchart.Hosts.Start"),
         do("Ravenchart.Hosts.Put_Model", ref(root, CERTIFICATE, "Model_Digest")),
         *started,
@@ -325,6 +328,7 @@ def emit_main(system: System, header: str) -> Unit:
     withs = {ref("Ada.Real_Time"), ref("Ravenchart.Hosts"), ref("System"), ref(root, "Reports")}
     withs.add(ref(root, CERTIFICATE))
     withs |= {ref(root, LIFECYCLE)} if begins else set()
+    withs |= {ref(ORDERS)} if ordered else set()
     withs |= {ref(root, ada_case(i)) for i, _ in system.shutdown.raises}
     withs |= {
         ref(root, ada_case(system.instance(i).component.name)) for i, _ in system.shutdown.raises

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
-from ravenchart.building import checking, programs
+from ravenchart.building import checking, programs, targets
 from ravenchart.failures import Refused
 from ravenchart.gen.diagnostics import render
+from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import Loaded, load
 from ravenchart.paths import ROOT
@@ -85,12 +87,51 @@ def test_a_message_must_be_gone_before_it_comes_again() -> None:
     assert "give it a deadline of 20 ms or less" in text
 
 
-@pytest.mark.parametrize("driver", ["slcan", "socketcan", "ctucanfd"])
-def test_a_driver_without_buffers_by_priority_is_refused(driver: str, tmp_path: Path) -> None:
+@pytest.fixture
+def by_priority(tmp_path: Path) -> Path:
+    """A model whose bus has transmit buffers by priority; each node sends three messages."""
     model = tmp_path / "model.yaml"
     model.write_text(MODEL.read_text().replace(*PRIORITY))
-    checked = checking.check(model)
-    with pytest.raises(Refused, match=f"the driver {driver} sends frames in the order"):
+    return model
+
+
+@pytest.mark.parametrize("driver", ["slcan", "socketcan", "xilinx"])
+def test_a_driver_without_buffers_by_priority_is_refused(driver: str, by_priority: Path) -> None:
+    checked = checking.check(by_priority)
+    with pytest.raises(Refused, match=f"the driver {driver} sends frames in the order") as refused:
         programs.check_driver(checked, driver)
+    assert "take one of loopback, bus, ctucanfd, or write `buffers: fifo`" in str(refused.value)
     programs.check_driver(checked, "bus")
     assert programs.default_driver(checked) == "bus"
+
+
+def test_the_hint_names_the_drivers_of_the_target(by_priority: Path) -> None:
+    with pytest.raises(Refused, match="hint: take one of loopback, or write"):
+        programs.check_driver(checking.check(by_priority), "xilinx", targets.target("zynqmp"))
+
+
+def test_a_driver_needs_a_buffer_for_each_message_of_a_node(
+    by_priority: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checked = checking.check(by_priority)
+    programs.check_driver(checked, "ctucanfd")
+    monkeypatch.setitem(programs.BY_PRIORITY, "ctucanfd", 2)
+    with pytest.raises(Refused) as refused:
+        programs.check_driver(checked, "ctucanfd")
+    assert str(refused.value) == (
+        "ravenchart: error: panel sends 3 messages on link, which has `buffers: priority`, but "
+        "the driver ctucanfd has 2 transmit buffers\n"
+        "  hint: take another driver, send at most 2 messages, or write `buffers: fifo`"
+    )
+    monkeypatch.setitem(programs.BY_PRIORITY, "ctucanfd", 3)
+    programs.check_driver(checked, "ctucanfd")
+
+
+def test_the_main_program_sets_the_order_first() -> None:
+    order = "Ravenchart.Can.Transmit_Orders.Set_By_Priority (1);\n   Ravenchart.Hosts.Start;"
+    for replacements, wanted in (((PRIORITY,), True), ((), False)):
+        files = generate(system_of(*replacements), claims_of(analyse(system_of(*replacements))))
+        mains = [text for name, text in files.items() if str(name).endswith("_main.adb")]
+        assert len(mains) == 2
+        assert all((order in text) == wanted for text in mains)
+        assert wanted == any("Transmit_Orders" in text for text in files.values())
