@@ -27,7 +27,7 @@ def test_sources_that_change_during_a_proof_give_no_result(
     monkeypatch.setattr(ages, "tool_text", lambda _: "tool")
     monkeypatch.setattr(earlier, "load", lambda _: None)
     monkeypatch.setattr(earlier, "store", lambda key, _: stored.append(key))
-    monkeypatch.setattr(spark_results, "read_results", lambda *_: empty)
+    monkeypatch.setattr(spark_results, "read_results", lambda *_, with_bodies: empty)
 
     def run(_task: proving.ProofTask, _server: object, _tell: object) -> None:
         source.write_text(text)
