@@ -42,11 +42,12 @@ PATIENCE = 60.0
 def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> RunOutcome:
     """Run a program on the emulator of its board; Unusable where it has none.
 
-    Virtual time depends on the instructions alone, so no bound has an excuse. The bench of a
-    scenario is in that time too.
+    Virtual time depends on the instructions alone, so no bound on one core has an excuse. The bench
+    of a scenario is in that time too.
     """
     emulator = board.target.facts.emulator
-    if request.analysis.system.most_cores > 1:
+    cores = request.analysis.system.most_cores
+    if emulator is not None and cores > 1 and "{cores}" not in emulator.command:
         raise Unusable(
             f"the emulator of {board.target.name} starts one core only, and the model has tasks on "
             "several: run it without `--target`"
@@ -62,7 +63,8 @@ def run_board(board: Board, request: runs.RunRequest, progress: Progress) -> Run
     if request.scenario is not None or len(request.controllers) > 1:
         return _joined(board, emulator, request, progress)
     seconds = request.seconds
-    words = command(board, emulator, request.controllers[0].executable, _report(request), seconds)
+    image = request.controllers[0].executable
+    words = command(board, emulator, image, _report(request), seconds, cores)
     progress(f"emulate {seconds:g} s")
     with _started(words, request.folder) as process:
         ended, problems = _ended(process, PATIENCE * (1.0 + seconds))
@@ -95,6 +97,7 @@ def _joined(
     dbc = runs.dbc_of(request)
     codec = Codec.from_file(dbc)
     grace = request.analysis.system.shutdown.grace / 1e9 + STOP_MARGIN
+    cores = {node.name: node.cores for node in request.analysis.system.nodes}
     played: ScenarioResult | None = None
     with ExitStack() as stack:
         record = stack.enter_context(bus_log.recorded(request.log, dbc.stem))
@@ -102,7 +105,7 @@ def _joined(
         for one in request.controllers:
             ends = stack.enter_context(board_bus.pipes(_home(request, one)))
             report = _report(request, one)
-            words = command(board, emulator, one.executable, report, LONGEST)
+            words = command(board, emulator, one.executable, report, LONGEST, cores[one.node])
             process = stack.enter_context(_started(words, report.parent))
             processes.append(process)
             links.append(board_bus.BoardLink(ends, partial(_lives, process)))
@@ -158,7 +161,8 @@ def _concluded(
         ended = replace(ended, warnings=(*ended.warnings, *said))
         seen = runs.read(trace, read_map(*_map(one)), problems)
         if seen is not None:
-            seen.host_latency = None
+            if request.analysis.system.node(one.node).cores == 1:
+                seen.host_latency = None  # of several, one has the emulator at a time
             parts[one.node] = seen
     whole = next(iter(parts.values()), None)
     if len(request.controllers) > 1 and whole is not None:
@@ -183,7 +187,7 @@ def write_trace(serial: Path, trace: Path, *, together: bool) -> tuple[str, ...]
 
 
 def command(
-    board: Board, emulator: Emulator, image: Path, report: Path, seconds: float
+    board: Board, emulator: Emulator, image: Path, report: Path, seconds: float, cores: int = 1
 ) -> list[str]:
     """The words that run an image for that long, with its serial line written to a file."""
     told = {
@@ -191,6 +195,7 @@ def command(
         "report": report.absolute(),
         "clock": board.clock_rate,
         "run_time": round(seconds * 1e9),
+        "cores": cores,
     }
     return [part.format(**told) for part in emulator.command]
 

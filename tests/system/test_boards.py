@@ -27,6 +27,7 @@ from ravenchart.stacks import symbols
 from ravenchart.tools import toolchain
 from tests.support import board_stacks
 from tests.support.interpreted import stimuli_of, system_of
+from tests.system.test_logical_feature import MODELS as LOGICAL
 
 EXAMPLES = ("three_components", "crossing", "pump", "surgical_robot", "cartesian_robot")
 BOARD = "zynqmp"
@@ -345,11 +346,15 @@ def test_interrupts_release_processors_within_their_bounds_on_the_board(
     assert "verdict: PASS" in printed
 
 
+@pytest.mark.parametrize("name", LOGICAL)
 def test_logical_execution_times_give_the_values_of_the_simulation_on_the_board(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """On one core and on two, with other priorities too: always the same values."""
     home = tmp_path / "logical"
     shutil.copytree(ROOT / "tests" / "feature" / "logical", home)
+    simulated = system_of((home / "model.yaml").read_text(encoding="utf-8"))
+    (home / "model.yaml").write_text(LOGICAL[name], encoding="utf-8")
     report = tmp_path / "report"
     words = ["run", str(home / "model.yaml"), "--target", BOARD, "--seconds", "2"]
     assert command_line.main([*words, "--report", str(report)]) == 0
@@ -357,11 +362,44 @@ def test_logical_execution_times_give_the_values_of_the_simulation_on_the_board(
     names = read_map((home / "generated" / "trace.json").read_text(encoding="utf-8"))
     seen = read_trace((report / "trace.txt").read_text(encoding="ascii").splitlines(), names)
     assert seen.values_lost == 0
-    system = system_of((home / "model.yaml").read_text(encoding="utf-8"))
-    wanted = interpreted(system, stimuli_of("- {until: 3 s}", system)).values
+    wanted = interpreted(simulated, stimuli_of("- {until: 3 s}", simulated)).values
     elements = {one.element.name for one in seen.values}
     assert elements == {one.element for one in wanted}
     for element in elements:
         found = [one.value for one in seen.values if one.element.name == element]
         same = [one.value for one in wanted if one.element == element]
         assert len(found) >= 90 and found == same[: len(found)], element
+
+
+# --- Several cores: the emulator executes one at a time --------------------------------
+
+
+def test_the_scenario_of_two_cores_passes_on_the_board_and_is_the_same_each_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario = ROOT / "examples" / "seam_tracker" / "scenario.yaml"
+    runs = []
+    for number in range(2):
+        home = tmp_path / str(number)
+        status, printed = play(scenario, home, capsys, "seam_tracker")
+        assert status == 0, printed
+        assert "verdict: PASS" in printed
+        released = {name: int(count) for name, count in OBSERVED.findall(printed)}
+        assert released["motion"] > 500 and released["vision"] > 120  # on core 1, and on core 2
+        runs.append((home / "serial.txt").read_bytes())
+    assert len(runs[0].splitlines()) > 1_500
+    assert runs[0] == runs[1]
+
+
+def test_mailboxes_of_every_kind_join_two_cores_of_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = tmp_path / "cores"
+    shutil.copytree(ROOT / "tests" / "feature" / "cores", home)
+    words = ["run", str(home / "model.yaml"), "--target", BOARD, "--seconds", "2"]
+    command_line.main([*words, "--report", str(tmp_path / "report")])
+    printed = capsys.readouterr().out
+    assert len(OBSERVED.findall(printed)) == 4
+    assert re.search(r"^filter.Work +Waiting, Quiet, Crowded *$", printed, re.M)
+    assert re.search(r"^panel.Lamp +Dark, Bright *$", printed, re.M)
+    assert re.search(r"verdict: FAIL: fault: Queue_Overflow, \d+ times\n", printed)  # meant so

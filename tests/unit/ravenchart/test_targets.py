@@ -15,6 +15,8 @@ from ravenchart.building import checking, images, programs, targets, variants
 from ravenchart.failures import Refused, ToolFailed, Unusable
 from ravenchart.gen.model.system import System
 from ravenchart.paths import ROOT
+from ravenchart.running import boards
+from ravenchart.running.runs import RunRequest
 
 MODEL = ROOT / "examples" / "three_components" / "model.yaml"
 PERIOD = ("processor_1:\n", "processor_1:\n    offset: 1005 ns\n")
@@ -205,3 +207,20 @@ def test_objects_for_another_run_time_library_have_another_place(tmp_path: Path)
     assert board.place != before
     assert board.place.startswith("zynqmp-")
     assert board.scenario()["RAVENCHART_OBJECTS"] != objects
+
+
+def test_an_emulator_starts_as_many_cores_as_a_node_has(tmp_path: Path) -> None:
+    made = board(EXACT)
+    emulator = made.target.facts.emulator
+    assert emulator is not None
+    for cores in (1, 2):
+        words = boards.command(made, emulator, tmp_path, tmp_path, 1.0, cores)
+        assert words[words.index("-smp") + 1] == str(cores)
+
+
+def test_a_model_for_two_cores_is_refused_where_the_emulator_starts_one(tmp_path: Path) -> None:
+    checked = checking.check(ROOT / "examples" / "seam_tracker" / "model.yaml")
+    request = RunRequest(checked.analysis, (), tmp_path, None, 1.0, tmp_path)
+    one = targets.Emulator(command=("emulate", "{image}"), time="none", hint="none")
+    with pytest.raises(Unusable, match="the emulator of zynqmp starts one core only"):
+        boards.run_board(board(EXACT, emulator=one), request, lambda text: None)
