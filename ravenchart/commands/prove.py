@@ -70,17 +70,19 @@ def execute(options: argparse.Namespace) -> int:
     for one in made:
         name = one.node or one.checked.system.name
         proof, open_ = _proof(one, driver, options)
+        where = f" on {one.node}" if one in nodes and len(nodes) > 1 else ""
+        title = f"{one.checked.system.name}{where}"
+        for finding in open_:
+            say(options.answer, "\n".join(finding.lines()))
+        print(f"{title}: {proof.summary()}", flush=True)
         ending, endless = _ending(one, driver, options)
         excused = outside_spark.listed(proof.results.outside, reasons)
         left = () if excused else endless
-        for finding in (*open_, *left):
+        for finding in left:
             say(options.answer, "\n".join(finding.lines()))
-        answer.programs.append(_proved(name, proof, ending, (*open_, *left)))
-        where = f" on {one.node}" if one in nodes and len(nodes) > 1 else ""
-        print(f"{one.checked.system.name}{where}: {proof.summary()}", flush=True)
         if ending is not None:
-            told = _told(one, endless, excused=bool(excused))
-            print(f"{one.checked.system.name}{where}: {told}", flush=True)
+            print(f"{title}: {_told(one, endless, excused=bool(excused))}", flush=True)
+        answer.programs.append(_proved(name, proof, ending, (*open_, *left)))
         clean = clean and proof.clean and not left
         outside |= dict.fromkeys(proof.results.outside)
         if options.record is not None:
