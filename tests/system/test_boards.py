@@ -24,6 +24,7 @@ from ravenchart.failures import Unusable
 from ravenchart.paths import ROOT
 from ravenchart.running import boards
 from ravenchart.stacks import symbols
+from ravenchart.stacks.report import Stack
 from ravenchart.tools import toolchain
 from tests.support import board_stacks
 from tests.support.interpreted import stimuli_of, system_of
@@ -314,8 +315,14 @@ end Interrupts_Feature.Kicker_Type.Activities;
 """
 
 
+def interrupt_stack(board: targets.Board, model: Path) -> Stack:
+    """The stack on which the program of a model handles its interrupts."""
+    image = programs.programs_of(checking.check(model))[0].build("release", board=board)
+    return next(one for one in stacks.kept(image).stacks if one.task == "interrupts")
+
+
 def test_interrupts_release_processors_within_their_bounds_on_the_board(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    board: targets.Board, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """An activity makes both interrupts of the feature pending, every 60 ms."""
     home = tmp_path / "interrupts"
@@ -344,6 +351,9 @@ def test_interrupts_release_processors_within_their_bounds_on_the_board(
     assert {observed[name] for name in ("limiting", "turning")} == {34}
     assert re.search(r"^stopped +34 .* ok$", printed, re.M)
     assert "verdict: PASS" in printed
+    plain = ROOT / "examples" / "three_components" / "model.yaml"
+    deep, shallow = interrupt_stack(board, model), interrupt_stack(board, plain)
+    assert deep.size >= (deep.bound or 0) > (shallow.bound or 0) > 0  # a level more
 
 
 @pytest.mark.parametrize("name", LOGICAL)
@@ -403,3 +413,52 @@ def test_mailboxes_of_every_kind_join_two_cores_of_the_board(
     assert re.search(r"^filter.Work +Waiting, Quiet, Crowded *$", printed, re.M)
     assert re.search(r"^panel.Lamp +Dark, Bright *$", printed, re.M)
     assert re.search(r"verdict: FAIL: fault: Queue_Overflow, \d+ times\n", printed)  # meant so
+
+
+ONE_BUS = (
+    (r"  backup: \{bit_rate.*\n", ""),
+    (r"  from_backup: .*\n", ""),
+    (r"bus: backup, id: 0x020", "bus: flight, id: 0x021"),
+    (r"bus: backup, id: 0x038", "bus: flight, id: 0x039"),
+    (r"bus: backup", "bus: flight"),
+    (r"receive_depth: 32, transmit_depth: 8", "receive_depth: 64, transmit_depth: 16"),
+)
+"""The autopilot with one bus for all messages: a board has no second one."""
+
+UNCUT = (
+    (r"bus:\n(  -.*\n)+", ""),
+    (r"  - \{wait_for: path.value, is: Backup_Alone(.*\n)+?(?=  - \{stop_feedback)", ""),
+    (r"  - \{region: selector.Paths, .*\n", ""),
+    (r"  - \{lost: .*\n", ""),
+    (r"  - \{fault: (Queue|Can).*\n", ""),
+)
+"""Its scenario without the part in which a bus is cut."""
+
+
+def changed(file: Path, changes: tuple[tuple[str, str], ...]) -> None:
+    """Change a file; each change has to apply."""
+    text = file.read_text(encoding="utf-8")
+    for old, new in changes:
+        text, count = re.subn(old, new, text)
+        assert count, old
+    file.write_text(text, encoding="utf-8")
+
+
+def test_three_boards_fly_the_aircraft_one_of_them_on_two_cores(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = tmp_path / "autopilot"
+    shutil.copytree(ROOT / "examples" / "autopilot", home)
+    changed(home / "model.yaml", ONE_BUS)
+    changed(home / "scenario.yaml", UNCUT)
+    words = ["run", str(home / "model.yaml"), "--target", BOARD]
+    words += ["--scenario", str(home / "scenario.yaml"), "--report", str(tmp_path / "report")]
+    status = command_line.main(words)
+    printed = capsys.readouterr().out
+    assert status == 0, printed
+    steps = re.findall(
+        r"^guide.Flight +On_Ground, Hands_On, Hold_Level, Way_Home *$", printed, re.M
+    )
+    assert len(steps) == 1
+    released = re.findall(r"^(\w+) +(\d+) +0 +[\d.]+ +[\d.]+ +[\d.]+ % +(?:ok|host)", printed, re.M)
+    assert len(released) == 11 and min(int(count) for _, count in released) > 40
