@@ -353,7 +353,8 @@ def test_interrupts_release_processors_within_their_bounds_on_the_board(
     assert "verdict: PASS" in printed
     plain = ROOT / "examples" / "three_components" / "model.yaml"
     deep, shallow = interrupt_stack(board, model), interrupt_stack(board, plain)
-    assert deep.size >= (deep.bound or 0) > (shallow.bound or 0) > 0  # a level more
+    assert deep.bound is not None and shallow.bound is not None
+    assert deep.size is not None and deep.size >= deep.bound > shallow.bound  # a level more
 
 
 @pytest.mark.parametrize("name", LOGICAL)
