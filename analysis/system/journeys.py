@@ -96,8 +96,9 @@ def _reactions(chain: Chain, system: System, seen: Observation) -> list[int]:
 def _is_awaited(chain: Chain, system: System) -> bool:
     """Whether what the chain begins with releases its first row, so that it waits for no period."""
     first = str(chain.way[0])
-    rows = {slot.element: one for one in system.processors for slot in one.slots}
-    return first in rows and rows[first].released_by_interrupt is not None
+    if all(slot.element != first for slot in system.slots):
+        return False  # a port or a message
+    return system.processor_of(first).released_by_interrupt is not None
 
 
 def _end(start: int, stages: Sequence[Stage]) -> int | None:

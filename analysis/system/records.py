@@ -164,12 +164,12 @@ class _Counts:
     def ports(self, row: str) -> Records:
         """A handler: each of its ports has a new value, or none in time, and has lost some."""
         found = Records()
-        component = self.instance.component
-        for port in component.handled(row):
+        ports = self.instance.component.handled(row)
+        for port in ports:
             new, stale = self.offered(port.on_arrival), self.offered(port.on_stale)
             found += Records(1 + max(new.trace, stale.trace)) + self.offered(port.on_overflow)
             found += self._recorded(port.name)
-        own, polls = {port.name for port in component.handled(row)}, self.system.polls
+        own, polls = {port.name for port in ports}, self.system.polls
         polled = (p.port for p in polls if p.instance == self.instance.name and p.port in own)
         found += _sum(self.put(port) for port in polled)
         controls = (name for one, name in self._messages() if one.controls and name in own)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.emit.nodes.termination import ending_claims
-from ravenchart.proof.outside_spark import OF_INTERRUPTS, OF_SLOTS
+from ravenchart.proof.outside_spark import own_names
 
 from . import records
 from .claim import Claim, ClaimKind, Shown, verdict_of
@@ -57,7 +57,7 @@ def _ending(facts: Facts, node: NodeFacts) -> Claim:
 
 def _outside(facts: Facts, node: NodeFacts) -> tuple[str, ...]:
     """Bodies outside SPARK that rows may call, by the list beside the model."""
-    own = [name for name, _ in facts.reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS}]
+    own = own_names(name for name, _ in facts.reasons)
     found = () if node.record is None else node.record.outside
     return tuple(name for name in found if not records.uncovered((name,), own))
 

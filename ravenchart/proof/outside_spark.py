@@ -14,7 +14,7 @@ A name covers all declarations inside it.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ravenchart.failures import Failure
@@ -89,16 +89,20 @@ def refused(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outsi
     return tuple(o for o in found if not any(_covers(name, o) for name in reasons))
 
 
+def own_names(names: Iterable[str]) -> tuple[str, ...]:
+    """The names that the list beside a model gives; not those of the runtime."""
+    return tuple(name for name in names if name not in {**OF_SLOTS, **OF_INTERRUPTS})
+
+
 def listed(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[Outside, ...]:
-    """The entities outside SPARK that the list beside a model names; not those of the runtime."""
-    own = [name for name in reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS}]
+    """The entities outside SPARK that the list beside a model names."""
+    own = own_names(reasons)
     return tuple(o for o in found if any(_covers(name, o) for name in own))
 
 
 def idle(found: Sequence[Outside], reasons: Mapping[str, str]) -> tuple[str, ...]:
     """Names of the list that cover nothing; those of the runtime need not."""
-    asked = (name for name in reasons if name not in {**OF_SLOTS, **OF_INTERRUPTS})
-    return tuple(name for name in asked if not any(_covers(name, o) for o in found))
+    return tuple(name for name in own_names(reasons) if not any(_covers(name, o) for o in found))
 
 
 def agree(found: Sequence[Outside], reasons: Mapping[str, str]) -> bool:
