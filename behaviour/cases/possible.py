@@ -233,7 +233,7 @@ class _PossibleCoverage:
         asked = {
             one: symbol
             for one, symbol in self.reach.symbols.items()
-            if str(one) in used and self._is_from_outside(one, event)
+            if one.unknown in used and self._is_from_outside(one, event)
         }
         values: dict[str, dict[str | None, Scalar]] = {} if event is None else {event: {}}
         silent: list[str] = []
@@ -269,7 +269,7 @@ class _PossibleCoverage:
         own = [
             (one, symbol)
             for one, symbol in self.reach.symbols.items()
-            if one[0] == Reading.DATA.value and one not in asked and str(one) in used
+            if one[0] == Reading.DATA.value and one not in asked and one.unknown in used
         ]
         for one, symbol in asked.items():
             for other, value in own:

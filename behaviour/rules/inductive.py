@@ -195,7 +195,7 @@ class _Search:
     def symbol(self, name: Variable) -> Term:
         """The unknown that stands for a variable before a move."""
         if name not in self.symbols:
-            self.symbols[name] = logic.symbol(str(name), self.types[name])
+            self.symbols[name] = logic.symbol(name.unknown, self.types[name])
         return self.symbols[name]
 
     def of_condition(self, name: Variable) -> Term:

@@ -256,7 +256,7 @@ def _lasting(reach: Reachable, thread: Thread, condition: Term) -> Term:
     one, another one may have set the chart's data: conditions on these data are left out."""
     if thread.parts is None:
         return condition
-    own = {str(name) for name, _ in _written(reach, thread)}
+    own = {name.unknown for name, _ in _written(reach, thread)}
     asked = condition.children() if z3.is_and(condition) else [condition]
     return z3.And([one for one in asked if not own & {*logic.unknowns([one])}])
 

@@ -75,7 +75,7 @@ def trace(tree: ChartTree, steps: Sequence[Edge]) -> str:
 def variables(term: Term, symbols: dict[Variable, Term]) -> list[Variable]:
     """The variables in a term, in the order declared."""
     used = logic.unknowns([term])
-    return [name for name in symbols if str(name) in used]
+    return [name for name in symbols if name.unknown in used]
 
 
 def valuation(reach: Reachable, model: Term, terms: Iterable[Term]) -> str:

@@ -58,6 +58,11 @@ class Variable(tuple[str, str, str | None]):
         return name if field is None else f"{name}.{field}"
 
     @property
+    def unknown(self) -> str:
+        """The name of its unknown: the values of two events are two, though both read `event`."""
+        return f"{self} of {self[1]}" if self[0] == Reading.EVENT.value else str(self)
+
+    @property
     def state(self) -> str:
         """The state that a published one is about."""
         assert self[2] is not None

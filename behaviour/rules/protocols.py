@@ -71,6 +71,8 @@ def _hindrance(callers: tuple[Region | Activity, ...]) -> str | None:
         rows = " and ".join(row.name for row in callers)
         return f"{rows} both call, and their order is not fixed"
     caller = callers[0]
+    if isinstance(caller, Activity) and caller.forwards:
+        return f"{caller.name} forwards the calls of others"
     if isinstance(caller, Activity) and caller.flow is None:
         return f"the body of {caller.name} is the user's"
     return None

@@ -119,7 +119,7 @@ class Reachable:
     def symbol(self, name: Variable) -> Term:
         """The unknown that stands for a variable as a step reads it."""
         if name not in self.symbols:
-            self.symbols[name] = logic.symbol(str(name), self.types[name])
+            self.symbols[name] = logic.symbol(name.unknown, self.types[name])
         return self.symbols[name]
 
     @cached_property

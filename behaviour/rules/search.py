@@ -97,7 +97,7 @@ class WaySearch:
 
     def __post_init__(self) -> None:
         self.threads = _cone(self.reach, self.bad)
-        self.names = {str(name): name for name in self.reach.types}
+        self.names = {name.unknown: name for name in self.reach.types}
         self.readings: dict[str, tuple[Variable, int]] = {}
         """The unknowns for values from outside: what each is of, and the step that reads it."""
         self.external: dict[str, list[str | None]] = {}
@@ -199,7 +199,7 @@ class WaySearch:
 
     def read(self, name: Variable, number: int) -> Term:
         """The unknown for a value from outside that a step reads."""
-        text = f"{name}@{number}"
+        text = f"{name.unknown}@{number}"
         self.readings[text] = name, number
         return logic.symbol(text, self.reach.types[name])
 
@@ -455,7 +455,7 @@ def _cone(reach: Reachable, bad: Term) -> list[Thread]:
     events: set[str] = set()
     while True:
         used = logic.unknowns(asked)
-        names = [name for name in reach.symbols if str(name) in used]
+        names = [name for name in reach.symbols if name.unknown in used]
         found = [
             thread
             for thread in reach.threads
