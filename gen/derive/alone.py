@@ -49,7 +49,12 @@ REPLIES = ""
 def hindrance(component: Component) -> str | None:
     """The reason why its instances cannot stand alone; None where they can."""
     for one in component.provides:
-        if one.server is not None and named(component.activities, one.server).flow is None:
+        if one.server is None:
+            continue
+        server = named(component.activities, one.server)
+        if server.forwards:
+            return f"{one.server} forwards the requests of {one.name}"
+        if server.flow is None:
             return f"the user's {one.server} serves its interface {one.name}"
     return None
 

@@ -178,6 +178,12 @@ def gathers(system: System, binding: Binding) -> bool:
     return reached and called and awaited(component, binding.need)
 
 
+def answered_at_once(component: Component, activity: Activity) -> tuple[str, ...]:
+    """The commands that an activity forwards and whose replies it hands back: those of devices."""
+    served = component.served_by(activity.name) if activity.forwards else None
+    return () if served is None else tuple(one.name for one in served.requests if one.reply)
+
+
 def receivers(system: System, name: str | None) -> tuple[str, ...]:
     """The rows that receive the message of that name."""
     return tuple(

@@ -161,38 +161,43 @@ def with_nodes(system: System) -> System:
         else:
             bus = processor.released_by
             if bus is not None:
-                homes = [node.name for node in system.nodes if system.received(bus, node.name)]
+                homes = _receiving(system, bus)
             else:
                 homes = system.joining(processor.slots[0].owner)
             found += [_on(processor, home, several=len(homes) > 1) for home in homes]
-    watched = (_with_watches(system, processor) for processor in found)
-    return replace(system, processors=tuple(p for p in watched if p.slots))
+    named_rows = (_with_rows_of_buses(system, processor) for processor in found)
+    return replace(system, processors=tuple(p for p in named_rows if p.slots))
 
 
-def _with_watches(system: System, processor: Processor) -> Processor:
-    """The processor with each watch named after its node where the bus has several.
+def _with_rows_of_buses(system: System, processor: Processor) -> Processor:
+    """The processor with each row of a bus named after its node where the bus has several.
 
     The watch of a bus that carries nothing falls away.
     """
     slots: list[Slot] = []
     for slot in processor.slots:
-        homes = system.joining(slot.owner) if slot.work is Work.BUS_WATCH else []
+        homes: Sequence[str] = ()
+        if slot.work is Work.BUS_WATCH:
+            homes = system.joining(slot.owner)
+        elif slot.work is Work.BUS_RECEIVE:
+            homes = _receiving(system, slot.owner)
         if len(homes) > 1:
-            slots.append(replace(slot, name=f"{Work.BUS_WATCH.value}_{processor.node}"))
+            slots.append(replace(slot, name=f"{slot.work.value}_{processor.node}"))
         elif homes or slot.work is not Work.BUS_WATCH:
             slots.append(slot)
     return replace(processor, slots=tuple(slots))
+
+
+def _receiving(system: System, bus: str) -> list[str]:
+    """The nodes that receive from a bus."""
+    return [node.name for node in system.nodes if system.received(bus, node.name)]
 
 
 def _on(processor: Processor, node: str, *, several: bool) -> Processor:
     """The copy on a node of a processor that only serves a bus."""
     if not several:
         return replace(processor, node=node)
-    slots = tuple(
-        replace(slot, name=f"{slot.name}_{node}") if slot.work is Work.BUS_RECEIVE else slot
-        for slot in processor.slots
-    )
-    return replace(processor, name=f"{processor.name}_{node}", node=node, slots=slots)
+    return replace(processor, name=f"{processor.name}_{node}", node=node)
 
 
 def _heard_here(bus: Bus, here: set[str]) -> Bus:

@@ -327,11 +327,13 @@ class ActivityForm(Element):
         "ends; `old(item)` is a data item before it, `sent(port)` whether it sends."
     )
     body: Annotated[
-        Annotated[Literal["user"], Tag("<one>")] | Annotated[list[ActionForm], Tag("<list>")],
-        shaped("`user` or a list of actions"),
+        Annotated[Literal["user", "forward"], Tag("<one>")]
+        | Annotated[list[ActionForm], Tag("<list>")],
+        shaped("`user`, `forward` or a list of actions"),
     ] = key(
         "`user` for a procedure written by hand, or a list of actions; the lists above may then "
-        "be left out."
+        "be left out. `forward`: each request of the interface that it serves is a call of the "
+        "required command of the same name."
     )
 
 

@@ -154,11 +154,18 @@ class Activity:
     raises: tuple[str, ...]
     while_in: StateRef | None
     flow: Flow | None
-    """None: the body is the user's."""
+    """None: the body is the user's, or it forwards requests."""
     requires: tuple[Clause, ...] = ()
     ensures: tuple[Clause, ...] = ()
     may_send: tuple[str, ...] = ()
     """Those of ``sends`` of which a user's body decides in each execution."""
+    forwards: bool = False
+    """Each request of the interface that it serves is a call of the command of the same name."""
+
+    @property
+    def by_user(self) -> bool:
+        """Whether its body is written by hand."""
+        return self.flow is None and not self.forwards
 
     @property
     def completes(self) -> StateRef | None:
@@ -274,7 +281,7 @@ class Component:
 
     def from_outside(self) -> frozenset[str]:
         """The data that may come to be anything in their types: by a user's body, or a command."""
-        written = {name for a in self.activities if a.flow is None for name in a.writes}
+        written = {name for a in self.activities if a.by_user for name in a.writes}
         return frozenset(written | {data.name for data in self.data if data.is_command})
 
     def users(self, data: str) -> tuple[str, ...]:

@@ -37,6 +37,7 @@ from .chart_structure import structure_errors
 from .charts import region_of
 from .contracts import contract_of, sent
 from .flows import Targets, Use, called_command, flow_of
+from .forwarding import forwarding, only_forwards
 from .interfaces import fallbacks_agree, heard_of, needs_of, provided_of, servers_serve_once
 from .members import Members, Namespace, invariants_of, members_of, outputs_of, vocabulary_of
 from .port_groups import groups_of
@@ -155,6 +156,7 @@ def parts_of(
     if findings.count() == before:
         fallbacks_agree(form, component, findings)
         servers_serve_once(component, findings)
+        component = forwarding(component, findings)
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"
         findings.error("RV-0513", form.origin, message)
@@ -239,7 +241,10 @@ def _activity(
     before = findings.count()
     lists = _lists(form, words, targets, findings)
     flow: Flow | None = None
-    if not isinstance(form.body, str):
+    forwards = form.body == "forward"
+    if forwards:
+        only_forwards(name, form, findings)
+    elif not isinstance(form.body, str):
         if form.has("may_send"):
             message = "only a body of the user has `may_send`: actions send where they say so"
             hint = "remove it; `if` makes a `send` depend on a condition"
@@ -267,6 +272,7 @@ def _activity(
         requires=requires,
         ensures=ensures,
         may_send=lists["may_send"],
+        forwards=forwards,
     )
 
 

@@ -405,7 +405,7 @@ def _check_served(
             findings.error("RV-1209", form.at_key(key), message, hint="name what is queued")
     if server is not None and (server.flow is not None or server.while_in is not None):
         message = f"{server.name} cannot serve {name}: it is a flow, or works in one state only"
-        hint = f"give {server.name} `body: user`, and no `while`"
+        hint = f"give {server.name} `body: user` or `body: forward`, and no `while`"
         findings.error("RV-1209", form.at("served_by"), message, hint=hint)
 
 

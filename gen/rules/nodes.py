@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ravenchart.gen.derive.calls import callers, devices_with_ends
+from ravenchart.gen.derive.calls import answered_at_once, callers, devices_with_ends
 from ravenchart.gen.derive.remote import is_across, obstacle
 from ravenchart.gen.diagnostics import Diagnostic, error, warning
 from ravenchart.gen.language.quantities import shown
@@ -59,7 +59,8 @@ def calls_can_be_carried(resolved: Resolved) -> Iterator[Diagnostic]:
         if len(homes) > 1:
             ends = " and ".join(f"{row} on {node}" for node, row in homes.items())
             text = f"the device {device.name} is called by {ends}"
-            yield error(ABSENT, device.origin, text, hint="let one node call it")
+            hint = "let one node call it, and forward the calls of others (`body: forward`)"
+            yield error(ABSENT, device.origin, text, hint=hint)
 
 
 def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -80,6 +81,26 @@ def servers_call_once(resolved: Resolved) -> Iterator[Diagnostic]:
                 notes = [(row.origin, f"{row.name} is declared here")]
                 hint = f"give {served.name} `queue: 1`, or call from another activity"
                 yield error("RV-0611", binding.origin, text, notes=notes, hint=hint)
+
+
+def forwarded_replies_come_from_devices(resolved: Resolved) -> Iterator[Diagnostic]:
+    """A row that forwards a request hands its reply back in the same execution.
+
+    Only a device replies to a call at once: a task does when it has executed it.
+    """
+    system = resolved.system
+    for binding in system.bindings:
+        need, component = binding.need, system.instance(binding.instance).component
+        for activity in component.activities:
+            at_once = need.command.name in answered_at_once(component, activity)
+            if at_once and not isinstance(binding.provider, Device):
+                text = (
+                    f"{binding.instance}.{activity.name} forwards {need.command.name}, whose "
+                    "reply does not come at once: no single device gives it"
+                )
+                notes = [(activity.origin, f"{activity.name} is declared here")]
+                hint = f"bind {need.interface} to a device; tasks call {need.command.name} directly"
+                yield error("RV-1209", binding.origin, text, notes=notes, hint=hint)
 
 
 def cores_exist(resolved: Resolved) -> Iterator[Diagnostic]:
@@ -200,6 +221,7 @@ NODE_RULES = (
     buffers_hold_what_is_sent,
     calls_can_be_carried,
     servers_call_once,
+    forwarded_replies_come_from_devices,
     cores_exist,
     raised_events_are_near,
     silence_is_seen,

@@ -226,7 +226,7 @@ def left_out(system: System) -> Diagnostic | None:
         (f"{instance.name}.{activity.name}", activity.origin)
         for instance in system.instances
         for activity in instance.component.activities
-        if activity.flow is None
+        if activity.by_user
     ]
     if not rows:
         return None

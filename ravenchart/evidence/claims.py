@@ -256,12 +256,12 @@ def _bodies(facts: Facts, component: Component, node: NodeFacts, suffix: str) ->
     """Activities: flows that are generated, and bodies of the user."""
     package = component_package(facts.checked.system.home_of(component), component)
     for child, mine in ((FLOWS, False), (ACTIVITIES, True)):
-        names = [a.name for a in component.activities if (a.flow is None) == mine]
+        names = [a.name for a in component.activities if a.by_user == mine and not a.forwards]
         if not names:
             continue
         unit = ref(package, child).text
         verdict, problems, told = _proved_unit(node, unit, may_be_simple=True)
-        unstated = [a.name for a in component.activities if a.flow is None and not a.ensures]
+        unstated = [a.name for a in component.activities if a.by_user and not a.ensures]
         if mine and unstated and verdict is Shown.MET:
             verdict = Shown.PARTLY
             problems = ("what the user's bodies compute is not stated by a contract",)

@@ -117,12 +117,15 @@ class Equipment:
         form = component.map("regions").map(row) or component.map("activities").map(row)
         steps = form.number("steps", 1)
         reads = 1
+        forwarded: set[str] = set()
         for _, served in component.map("provides").maps():
             if (served.text("served_by") or "").lower() == row.lower():
                 steps = reads = served.number("queue", 1)
+                if form.text("body") == "forward":
+                    forwarded = {one.lower() for one in served.texts("commands")}
         commands = self.model.section("commands")
         for command, _, offer in self._needs(instance):
-            if offer is None or not _uses(form, command):
+            if offer is None or not (command.lower() in forwarded or _uses(form, command)):
                 continue
             key = commands.name(command) or command
             yield offer, reads if commands.map(key).text("kind") == "read" else steps

@@ -82,3 +82,24 @@ def test_a_region_publishes_and_events_are_brought_without_a_warning(tmp_path: P
     assert "Link.Send_Grasp_1_Get_Heat (Life_Region.Data.Heat_Now);" in grasp
     #  the only callers are far: their numbers are the first
     assert "if Asked.Caller <= 255 then" in grasp
+
+
+@pytest.mark.slow
+def test_a_device_is_called_from_two_nodes(tmp_path: Path) -> None:
+    """From one directly, from the other through the task that forwards."""
+    copy = tmp_path / "forwarded"
+    shutil.copytree(ROOT / "tests" / "nodes" / "forwarded", copy)
+    checked = checking.check(copy / "model.yaml")
+    assert not checked.warnings
+    assert generation.write_program(checked).untouched == ()
+    controllers = tuple(controller(made) for made in programs.programs_of(checked))
+    ways = (copy / "generated", copy / "goes.yaml", 0.0, copy / "report")
+    outcome = run_nodes(controllers, checked.analysis, *ways)
+    assert [(step.text, step.outcome) for step in outcome.steps if not step.passed] == []
+    names = read_map((copy / "generated" / "panel" / "trace.json").read_text())
+    trace = (copy / "report" / "trace-panel.txt").read_text()
+    fired = [
+        one.text for one in read_trace(trace.splitlines(), names).of("transition", "boss_1.Plan")
+    ]
+    #  900 mm is too far for the guardian: the place that the boss waits for is its 800 mm
+    assert fired == ["start", "loose", "told", "arrived"]

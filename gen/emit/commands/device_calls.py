@@ -32,6 +32,7 @@ from ravenchart.gen.emit.ada.expressions import (
     OTHERS,
     Aggregate,
     Arg,
+    Choice,
     Expr,
     OperatorChain,
     all_else,
@@ -48,6 +49,8 @@ from ravenchart.gen.emit.ada.naming import (
     type_name,
 )
 from ravenchart.gen.emit.ada.statements import (
+    Assign,
+    Case,
     Comment,
     Do,
     ExitStatement,
@@ -406,6 +409,25 @@ def served(
         *work,
         *replied,
     )
+
+
+def forwarded(system: System, instance: Instance, provided: Provided) -> tuple[Stmt, ...]:
+    """A request as a call of the required command of its name; a device replies at once."""
+    rooms = {name: (room, of_type) for name, room, of_type in _rooms(system, instance, provided)}
+    package = ref(component_name(instance.component), requests_package(provided))
+    branches: list[tuple[Choice, tuple[Stmt, ...]]] = []
+    for one in provided.requests:
+        name = ada_case(one.name)
+        given = [] if one.argument is None else [ref("Asked", name)]
+        called = ref(f"Call_{name}")
+        if one.reply is not None:
+            provider = system.bound[instance.name, one.name].provider
+            assert isinstance(provider, Device)
+            called = ref(ada_case(provider.name), name)
+            given.append(ref(rooms[reply_param(one.name)][0]))
+        branches.append((ref(package, f"{name}_Asked"), (do(called, *given),)))
+    starts = (Assign(room, default_value(system, of_type)) for room, of_type in rooms.values())
+    return (*starts, Case(ref("Asked.Name"), branches))
 
 
 def request_queue(system: System, instance: Instance, provided: Provided) -> GenericInstance:

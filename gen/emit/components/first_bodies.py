@@ -22,7 +22,7 @@ from .packages import activity_package, activity_params, raise_value, raised_typ
 
 def first_bodies(system: System, component: Component, header: str) -> Iterator[Unit]:
     """A body for each package of activities that the user writes."""
-    users = tuple(a for a in component.activities if a.flow is None)
+    users = tuple(a for a in component.activities if a.by_user)
     package = component_package(system, component)
     for home in dict.fromkeys(activity_package(component, a) for a in users):
         inside = tuple(a for a in users if activity_package(component, a) == home)

@@ -214,7 +214,7 @@ def activity_package(component: Component, activity: Activity) -> str:
 def emit_activities(system: System, component: Component, header: str) -> tuple[Unit, ...]:
     """The spec of the user's activities; spec and body of those given as flows."""
     package = component_package(system, component)
-    users = tuple(a for a in component.activities if a.flow is None)
+    users = tuple(a for a in component.activities if a.by_user)
     flows = tuple(a for a in component.activities if a.flow is not None)
     units: list[Unit] = []
     for home in dict.fromkeys(activity_package(component, a) for a in users):

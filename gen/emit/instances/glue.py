@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ravenchart.gen.derive.calls import answered_at_once
 from ravenchart.gen.derive.crossing import core_of
 from ravenchart.gen.emit.ada.declarations import (
     SPARK,
@@ -227,7 +228,8 @@ class Glue(Commands):
         items += [body for one in component.regions for body in event_wait(self, one)]
         items += fill_bodies(self)
         used = {n for r in component.regions for n in r.sends}
-        used |= {n for a in component.activities for n in a.sends}
+        for activity in component.activities:
+            used |= {*activity.sends} - {*answered_at_once(component, activity)}
         items += [
             body
             for p in component.outputs()

@@ -39,7 +39,12 @@ from ravenchart.gen.emit.ada.statements import (
 )
 from ravenchart.gen.emit.charts.several_transitions import LIST
 from ravenchart.gen.emit.charts.shape import RegionShape
-from ravenchart.gen.emit.commands.device_calls import asked_args, request_objects, served
+from ravenchart.gen.emit.commands.device_calls import (
+    asked_args,
+    forwarded,
+    request_objects,
+    served,
+)
 from ravenchart.gen.emit.commands.gathered_calls import array_reads, read_array
 from ravenchart.gen.emit.commands.remote_calls import watched
 from ravenchart.gen.emit.commands.remote_reads import copy_name, publishes
@@ -56,7 +61,15 @@ from ravenchart.gen.emit.components.packages import (
 from ravenchart.gen.emit.language.configurations import Configurations
 from ravenchart.gen.emit.language.events import null_event
 from ravenchart.gen.emit.language.terms import names_read
-from ravenchart.gen.model.commands import Binding, Device, Gathered, Poll, RemoteRead, Server
+from ravenchart.gen.model.commands import (
+    Binding,
+    Device,
+    Gathered,
+    Poll,
+    Provided,
+    RemoteRead,
+    Server,
+)
 from ravenchart.gen.model.component import Activity, Port
 from ravenchart.gen.model.statechart import DONE, Region
 
@@ -344,6 +357,8 @@ class Rows(Site):
 
     def run_activity(self, activity: Activity) -> Subprogram:
         component = self.instance.component
+        if activity.forwards:
+            return self._run_forwarding(activity)
         declarations: list[Decl] = []
         before: list[Stmt] = []
         args: list[Arg] = []
@@ -384,25 +399,45 @@ class Rows(Site):
                 declarations.append(Object(raise_value(event), type_name(self.system, carried)))
                 args.append(Arg(raise_value(event), given))
             after.append(IfStatement(((ref(flag), (self._raise(event, given),)),)))
-        home = activity_package(component, activity)
-        work = Do(ref(self.component, home, ada_case(activity.name)), tuple(args))
-        expected = [p.name for p in activity_params(self.system, component, activity)]
-        assert expected == [a.name for a in args], (expected, args)
-        body: tuple[Stmt, ...] = (*before, work, *after)
+        body: tuple[Stmt, ...] = (*before, self._work(activity, args), *after)
         if provided is not None:
-            loop = served(self.system, self.instance, provided, body)
-            many = 1 if wakes(self, provided) else provided.depth  # one call in a release
-            body = (Loop(_times(many), loop),)
+            body = (self._serving(provided, body),)
         if guard is not None:
             region_name = ada_case(activity.while_in.region)  # type: ignore[union-attr]
             read = do(ref(f"{region_name}_Board", "Read"), ref(f"{region_name}_Now"))
             body = (read, IfStatement(((guard, body),)))
+        return self._execution(activity, declarations, body)
+
+    def _run_forwarding(self, activity: Activity) -> Subprogram:
+        """Each request is a call: no procedure of the component stands between."""
+        provided = self.instance.component.served_by(activity.name)
+        assert provided is not None
+        declarations = request_objects(self.system, self.instance, provided)
+        calls = forwarded(self.system, self.instance, provided)
+        return self._execution(activity, declarations, (self._serving(provided, calls),))
+
+    def _serving(self, provided: Provided, work: tuple[Stmt, ...]) -> Loop:
+        """The requests of one execution."""
+        many = 1 if wakes(self, provided) else provided.depth  # one call in a release
+        return Loop(_times(many), served(self.system, self.instance, provided, work))
+
+    def _execution(
+        self, activity: Activity, declarations: list[Decl], body: tuple[Stmt, ...]
+    ) -> Subprogram:
+        """An execution: what other nodes wait for stands before and behind its work."""
         sent = publishes(self.system, self.instance, activity, declarations)
         body = (*watched(self.system, self.instance, activity), *body, *sent)
         body = (*body, *transmits(self.system, self.instance, activity))
         return Subprogram(
             f"Run_{ada_case(activity.name)}", declarations=tuple(declarations), body=body
         )
+
+    def _work(self, activity: Activity, args: list[Arg]) -> Do:
+        """The call of an activity's procedure, with all its parameters."""
+        home = activity_package(self.instance.component, activity)
+        expected = [p.name for p in activity_params(self.system, self.instance.component, activity)]
+        assert expected == [a.name for a in args], (expected, args)
+        return Do(ref(self.component, home, ada_case(activity.name)), tuple(args))
 
     def _take_in(
         self,
