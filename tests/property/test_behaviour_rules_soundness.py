@@ -17,7 +17,7 @@ from ravenchart.behaviour.rules.threads import Thread
 from tests.support.interpreted import raised_outside, stimuli_of, system_of
 from tests.support.random_charts import events_of, instance_name, model_of
 
-CHARTS = (0, 2, 4, 7, 8, 11, 13, 15, 16, 21, 22, 23, 28)
+CHARTS = (0, 2, 4, 7, 8, 10, 11, 13, 15, 16, 21, 22, 23, 28)
 
 
 LIMITS = {

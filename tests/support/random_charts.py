@@ -17,6 +17,7 @@ import yaml
 from tests.support.random_regions import (
     MOST,
     PLAIN_EVENTS,
+    RANGES,
     SMALL,
     VALUED_EVENTS,
     Chart,
@@ -53,7 +54,7 @@ def component_of(seed: int) -> Json:
         ]
         chart.connect()
     events: Json = {name: {} for name in PLAIN_EVENTS}
-    events |= {name: {"type": SMALL} for name in VALUED_EVENTS}
+    events |= {name: {"type": of_type} for name, of_type in VALUED_EVENTS.items()}
     events["Ring"] = {"overflow": "drop_oldest"}
     data: Json = {}
     for chart in charts:
@@ -96,7 +97,7 @@ def model_of(seeds: Sequence[int]) -> str:
     node = {"context_switch": "1 us", "critical_section": "1 us"}
     model = {
         "system": "Random_Charts",
-        "types": {SMALL: {"range": [0, MOST]}},
+        "types": {name: {"range": list(ends)} for name, ends in RANGES.items()},
         "components": components,
         "nodes": {"board": node},
         "instances": {
@@ -122,7 +123,7 @@ def events_of(seed: int, seeds: Sequence[int], milliseconds: int = 400) -> str:
             at = rng.randrange(0, milliseconds)
             entry: Json = {"at": f"{at} ms", "raise": f"{instance_name(chart)}.{event}"}
             if event in VALUED_EVENTS:
-                entry["with"] = rng.randint(0, MOST)
+                entry["with"] = rng.randint(*RANGES[VALUED_EVENTS[event]])
             entries.append((at, index, entry))
     entries.sort(key=lambda one: one[:2])
     made = [entry for _, _, entry in entries]

@@ -17,9 +17,11 @@ Json = dict[str, Any]
 Place = tuple[str | None, str]
 
 PLAIN_EVENTS = ("Go", "Halt", "Turn", "Ring")
-VALUED_EVENTS = ("Level", "Dial")
 SMALL, MOST = "Small", 7
-"""The type of all integers, 0 .. MOST."""
+"""The type of all data, 0 .. MOST."""
+RANGES = {SMALL: (0, MOST), "Turned": (-20, 40)}
+VALUED_EVENTS = {"Level": SMALL, "Dial": "Turned"}
+"""The type of the value of each: those of two events differ."""
 STABLE, COMPOSITE, FINAL = "state", "composite", "final"
 
 
@@ -149,12 +151,14 @@ class Chart:
 
     # --- expressions and flows
 
-    def condition(self, event_value: bool = False) -> str:
-        """A condition over data, states of other regions and the event's value."""
+    def condition(self, event_value: str | None = None) -> str:
+        """A condition over data, states of other regions and the event's value, of that type."""
         rng = self.rng
         pick = rng.random()
         if event_value and pick < 0.4:
-            return f"event {rng.choice(('<', '>='))} {rng.choice(self.readable)}"
+            low, high = RANGES[event_value]
+            other = rng.choice((*self.readable, str(rng.randint(low + 1, high))))
+            return f"event {rng.choice(('<', '>='))} {other}"
         if self.elsewhere and pick < 0.55:
             return f"{rng.choice(('', 'not '))}in({rng.choice(self.elsewhere)})"
         if pick < 0.65:
@@ -171,7 +175,7 @@ class Chart:
             )
         )
 
-    def value(self, event_value: bool = False) -> str:
+    def value(self, event_value: str | None = None) -> str:
         """An expression of 0 .. MOST."""
         rng = self.rng
         one, other = rng.choice(self.readable), rng.choice(self.readable)
@@ -187,7 +191,7 @@ class Chart:
             )
         )
 
-    def flow(self, raising: float, event_value: bool = False) -> list[Json]:
+    def flow(self, raising: float, event_value: str | None = None) -> list[Json]:
         """Up to two actions."""
         actions: list[Json] = []
         for _ in range(self.rng.choice((0, 1, 1, 2))):
@@ -203,11 +207,11 @@ class Chart:
                 actions.append(self.setting(event_value))
         return actions
 
-    def setting(self, event_value: bool) -> Json:
+    def setting(self, event_value: str | None) -> Json:
         """Set a data item of the region."""
         return {"set": self.rng.choice(self.data), "to": self.value(event_value)}
 
-    def raising(self, event_value: bool) -> Json:
+    def raising(self, event_value: str | None) -> Json:
         """Raise an event."""
         event = self.rng.choice((*PLAIN_EVENTS, *VALUED_EVENTS))
         valued = {"with": self.value(event_value)} if event in VALUED_EVENTS else {}
@@ -255,7 +259,7 @@ class Chart:
         initials = [form] if "initial" in form else list(form.get("regions", {}).values())
         for initial in initials:
             if chance() < 0.4:
-                actions = [self.setting(False)]
+                actions = [self.setting(None)]
                 initial["initial"] = {"to": initial["initial"], "effect": actions}
 
     def completions(self) -> None:
@@ -278,7 +282,7 @@ class Chart:
             target = self.stable(self.vertices[name])
             if own and target is not None:
                 made = self.guarded({"from": name, "to": target.name}, 0.3)
-                self.transition(made | self.effect(False))
+                self.transition(made | self.effect(None))
         for join in joined:
             target = self.stable(join)
             sources = parts[join.name]
@@ -286,8 +290,8 @@ class Chart:
                 self.drop(join)
                 continue
             for source in sources:
-                self.transition({"from": source.name, "to": join.name} | self.effect(False))
-            self.transition({"from": join.name, "to": target.name} | self.effect(False))
+                self.transition({"from": source.name, "to": join.name} | self.effect(None))
+            self.transition({"from": join.name, "to": target.name} | self.effect(None))
 
     def parts(self, join: Vertex) -> list[Vertex]:
         """A leaf in each of two regions of the orthogonal state that a join is for."""
@@ -314,7 +318,7 @@ class Chart:
         """A transition of a state with a trigger."""
         pick = self.rng.random()
         made: Json = {"from": source.name, "to": target.name}
-        valued = False
+        valued = None
         if pick < 0.72:
             free = [
                 e for e in (*PLAIN_EVENTS, *VALUED_EVENTS) if (source.name, e) not in self.taken
@@ -323,7 +327,7 @@ class Chart:
                 return self.timed(made, source)
             event = self.rng.choice(free)
             made["on"] = event
-            valued = event in VALUED_EVENTS
+            valued = VALUED_EVENTS.get(event)
             deferred = event in self.forms[source.name].get("defer", ())
             made = self.guarded(made, 1.0 if deferred else 0.35, valued)
             if "guard" not in made:
@@ -350,9 +354,9 @@ class Chart:
         made["every" if repeats else "after"] = f"{self.rng.randint(1, 12) * 5} ms"
         if repeats and self.rng.random() < 0.5 and self.vertices[made["to"]] is source:
             del made["to"]
-        self.transition(self.guarded(made, 0.3) | self.effect(False))
+        self.transition(self.guarded(made, 0.3) | self.effect(None))
 
-    def guarded(self, made: Json, likely: float, event_value: bool = False) -> Json:
+    def guarded(self, made: Json, likely: float, event_value: str | None = None) -> Json:
         """With a guard, or without."""
         if self.rng.random() < likely:
             made["guard"] = self.asked(made["from"], self.condition(event_value))
@@ -373,7 +377,7 @@ class Chart:
             return any(o in self.orthogonal for o in around[: around.index(source.name) + 1])
         return not self.agree(state, source)
 
-    def effect(self, event_value: bool) -> Json:
+    def effect(self, event_value: str | None) -> Json:
         """An effect, or none."""
         actions = self.flow(0.25, event_value)
         return {"effect": actions} if actions else {}
@@ -392,22 +396,22 @@ class Chart:
                     guard = self.condition()
                     if vertex.kind == "junction":
                         guard = self.asked(vertex.name, guard)
-                    self.transition(made | {"guard": guard} | self.effect(False))
+                    self.transition(made | {"guard": guard} | self.effect(None))
                 if vertex.kind == "choice" or self.rng.random() < 0.6:
                     made = {"from": vertex.name, "to": self.rng.choice(targets).name}
-                    self.transition(made | {"guard": "else"} | self.effect(False))
+                    self.transition(made | {"guard": "else"} | self.effect(None))
             case "history" | "deep_history" if self.rng.random() < 0.5:
                 states = [v for v in self.at(vertex.place) if v.kind == STABLE]
                 if states:
                     made = {"from": vertex.name, "to": self.rng.choice(states).name}
-                    self.transition(made | self.effect(False))
+                    self.transition(made | self.effect(None))
             case "fork":
                 owner = self.forms[vertex.name].pop("of")
                 for region in self.orthogonal[owner][:2]:
                     inside = [v for v in self.states() if (owner, region) in v.places]
                     inside = [v for v in inside if v.place == (owner, region)]
                     made = {"from": vertex.name, "to": self.rng.choice(inside).name}
-                    self.transition(made | self.effect(False))
+                    self.transition(made | self.effect(None))
 
     def transition(self, form: Json) -> None:
         """Another transition."""
@@ -429,7 +433,7 @@ class Chart:
             made["deferred"] = rng.randint(1, 3)
         initial: object = self.top["initial"]
         if rng.random() < 0.4:
-            initial = {"to": initial, "effect": [self.setting(False)]}
+            initial = {"to": initial, "effect": [self.setting(None)]}
         return (
             made
             | self.written({**self.top, "initial": initial})
