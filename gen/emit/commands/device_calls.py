@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ravenchart.gen.derive.calls import (
+    asking,
     callers_of,
     calls_from_afar,
     delivered,
@@ -453,7 +454,9 @@ def published(system: System, instance: Instance) -> Iterator[tuple[Subprogram, 
         provider, item = binding.provider, published_by(binding)
         if isinstance(provider, Server) and provider.instance == instance.name:
             need, name = binding.need, binding.need.command.name
-            if item is not None and need.reply is not None and name not in seen:
+            if item is None or need.reply is None or name in seen:
+                continue
+            if asking(system, binding):
                 seen.add(name)
                 params = (Param("Reply", "out", type_name(system, need.reply)),)
                 yield Subprogram(ada_case(name), params), item
