@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from ravenchart.gen.derive.calls import callers_of, calls_from_afar
 from ravenchart.gen.model.commands import Provided
-from ravenchart.gen.model.component import Port, PortKind
+from ravenchart.gen.model.component import Activity, Port, PortKind
 from ravenchart.gen.model.instances import Connection, End, Events, Instance
 from ravenchart.gen.model.raising import more_events, raised_at_once, raises_for, taking_region
 from ravenchart.gen.model.statechart import Overflow
@@ -136,9 +136,15 @@ def _of_requests(instance: Instance, provided: Provided, analysis: Analysis) -> 
     served = End(instance.name, str(provided.server))
     ways = [(Carried(m.name), m.period) for m in afar if m.call and m.call.reply is None]
     times = [(analysis.latency((way, served)).reaction, period) for way, period in ways]
+    forwarding: set[End] = set()
     for binding in near:
         component = system.instance(binding.instance).component
         for row in component.senders(binding.need.command.name):
+            if isinstance(row, Activity) and row.forwards:
+                end = End(binding.instance, row.name)
+                if end in forwarding:
+                    continue  # each of its requests is one call, of whichever command
+                forwarding.add(end)
             serves = component.served_by(row.name)
             once = serves.depth if serves else getattr(row, "steps_per_execution", 1)
             within = from_release(analysis, (End(binding.instance, row.name), served))

@@ -156,7 +156,7 @@ def parts_of(
     if findings.count() == before:
         fallbacks_agree(form, component, findings)
         servers_serve_once(component, findings)
-        component = forwarding(component, findings)
+        component = forwarding(form, component, findings)
     if not (component.regions or component.activities or form.damaged or component.port_region):
         message = f"the component {name} has nothing to run: no region, no activity, no input"
         findings.error("RV-0513", form.origin, message)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ravenchart.gen.files.schema import ActivityForm
+from ravenchart.gen.files.schema import ActivityForm, ComponentForm
 from ravenchart.gen.language.names import Findings
 from ravenchart.gen.model.commands import Provided, Request
 from ravenchart.gen.model.component import Activity, Component
@@ -32,8 +32,10 @@ def only_forwards(name: str, form: ActivityForm, findings: Findings) -> None:
             findings.error("RV-0210", form.at_key(key), message, hint=hint)
 
 
-def forwarding(component: Component, findings: Findings) -> Component:
+def forwarding(form: ComponentForm, component: Component, findings: Findings) -> Component:
     """The component with the calls of the activities that forward."""
+    if form.lost("provides") or form.dropped("provides"):
+        return component  # who serves what was lost is not known
     made = (_calling(component, one, findings) for one in component.activities)
     return replace(component, activities=tuple(made))
 

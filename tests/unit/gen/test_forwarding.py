@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from ravenchart.analysis.findings.claims import claims_of
+from ravenchart.analysis.system.depths import depths
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.building import checking, generation
 from ravenchart.gen.derive.alone import hindrance
@@ -176,3 +177,46 @@ def test_receptions_of_one_bus_may_be_written_for_each_node() -> None:
         ("reception_cabinet: {released_by: line, node: cabinet,", "reception: {released_by: line,"),
     )
     assert {p.name: p.slots[0].element for p in shared.processors if p.released_by} == rows
+
+
+RELAYS = """\
+system: Relayed
+types: {Rate: {range: [0, 100]}}
+commands:
+  Stop: {kind: void}
+  Give: {kind: write, argument: Rate}
+components:
+  Relay:
+    requires:
+      Next: {commands: [Stop, Give]}
+    provides:
+      Own: {queue: 2, served_by: serve, commands: [Stop, Give]}
+    activities:
+      serve: {period: 10 ms, wcet: 10 us, body: forward}
+  Sink:
+    provides:
+      Own: {queue: 3, served_by: serve, commands: [Stop, Give]}
+    activities:
+      serve: {period: 20 ms, wcet: 10 us, body: user}
+nodes: {board: {context_switch: 5 us, critical_section: 2 us}}
+instances:
+  relay_1: {component: Relay, node: board}
+  sink_1: {component: Sink, node: board}
+bindings: [{from: relay_1.Next, to: sink_1.Own}]
+processors:
+  one: {stack: 16 KiB, activities: [relay_1.serve, sink_1.serve]}
+"""
+
+
+def test_a_forwarded_request_is_one_call_of_whichever_command() -> None:
+    """Six wait at most, two of each of three executions: two commands do not make them twelve."""
+    system = load(Path("model.yaml"), lambda path, limit: RELAYS.encode()).system
+    assert system is not None
+    found = {one.what: one.needed for one in depths(analyse(system))}
+    assert found == {"requests may wait in sink_1.Own": 6}
+
+
+def test_a_lost_interface_is_one_error() -> None:
+    text = RELAYS.replace("      Own: {queue: 2", "      Out: {queue: 2")
+    said = _said(load(Path("model.yaml"), lambda path, limit: text.encode()))
+    assert said.count("error:") == 1, said
