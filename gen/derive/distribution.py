@@ -18,8 +18,8 @@ from ravenchart.gen.language.names import path_name, problem_of
 from ravenchart.gen.model.authentication import Authentication
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.commands import Remote, RemoteRead
-from ravenchart.gen.model.instances import Connection, Instance
-from ravenchart.gen.model.nodes import Node
+from ravenchart.gen.model.instances import Connection, Instance, Queue
+from ravenchart.gen.model.nodes import InterruptLine, Node
 from ravenchart.gen.model.protection import Protection
 from ravenchart.gen.model.signals import fits_classic, length_of, signals_of
 from ravenchart.gen.model.system import (
@@ -188,7 +188,7 @@ def _with_rows_of_buses(system: System, processor: Processor) -> Processor:
     return replace(processor, slots=tuple(slots))
 
 
-def _receiving(system: System, bus: str) -> list[str]:
+def _receiving(system: System, bus: str | Queue | InterruptLine) -> list[str]:
     """The nodes that receive from a bus."""
     return [node.name for node in system.nodes if system.received(bus, node.name)]
 
