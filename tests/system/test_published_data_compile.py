@@ -34,7 +34,9 @@ components:
         queue: 2
         initial: A
         states: {{A: {{}}, B: {{entry: [{{set: {drive}, to: 7}}]}}}}
-        transitions: {{go: {{from: A, to: B, after: 50 ms}}, back: {{from: B, to: A, after: 50 ms}}}}
+        transitions:
+          go: {{from: A, to: B, after: 50 ms}}
+          back: {{from: B, to: A, after: 50 ms}}
   Panel:
     requires:
       Pump: {{commands: [Stop, Get_Rate]}}
@@ -45,7 +47,9 @@ components:
         queue: 2
         initial: A
         states: {{A: {{}}, B: {{entry: [{{call: Stop}}]}}}}
-        transitions: {{go: {{from: A, to: B, {trigger}}}, back: {{from: B, to: A, after: 50 ms}}}}
+        transitions:
+          go: {{from: A, to: B, {trigger}}}
+          back: {{from: B, to: A, after: 50 ms}}
 nodes: {{board: {{context_switch: 5 us, critical_section: 2 us}}}}
 instances:
   pump_1: {{component: Pump, node: board}}
