@@ -98,6 +98,7 @@ def test_a_value_that_the_model_has_already_is_refused() -> None:
 OF_EXAMPLES = {
     **{one: ROOT / Path(one.page).parent for one in LISTINGS if one.page.startswith("examples/")},
     one_of("docs/devices.md", "time_limit: 60 ms"): ROOT / "tests" / "nodes" / "commands",
+    one_of("docs/devices.md", "time_limit: 100 ms"): ROOT / "tests" / "nodes" / "forwarded",
     one_of("docs/libraries.md", "library: Blocks"): ROOT
     / "tests"
     / "feature"
