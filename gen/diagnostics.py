@@ -173,7 +173,7 @@ CODES: Mapping[str, str] = {
     "RV-0714": "A bus with `watch` is not watched by exactly one row on each of its nodes.",
     "RV-0715": "A port, interface or region cannot release a processor.",
     "RV-0716": "A processor that a queue releases does not hold the rows for it.",
-    "RV-0717": "A processor with a logical execution time gives others more than samples.",
+    "RV-0717": "Values that another processor sees before a logical execution time ends.",
     "RV-0718": "An interrupt does not release one processor that it can release.",
     "RV-0801": "A section without which there is no system is missing or empty.",
     "RV-0802": "Something cannot reach from one node to another yet.",

@@ -19,6 +19,7 @@ from ravenchart.analysis.system.timing import Analysis, Verdict
 from ravenchart.analysis.units import microseconds
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.language.terms import Ns
+from ravenchart.gen.model.logical import logical_of
 from ravenchart.gen.model.system import System
 
 WORDS = {Verdict.MET: "ok", Verdict.MISSED: "MISS", Verdict.NO_BOUND: "NONE"}
@@ -145,7 +146,8 @@ def response_parts(
 
 def instant_lines(system: System) -> tuple[str, ...]:
     """Logical execution times and chosen or given phases, each in a sentence."""
-    logical = [f"{p.name} {shown(p.logical)}" for p in system.processors if p.logical is not None]
+    times = {one.name: logical_of(system, one.name) for one in system.processors}
+    logical = [f"{name} {shown(time)}" for name, time in times.items() if time is not None]
     phases = [
         f"{slot.element} {shown(Ns(slot.phase * processor.period))}"
         for processor in system.processors

@@ -241,5 +241,5 @@ def completed(system: System) -> System:
     """A valid system with divisors, priorities, tasks, shared objects and the ways of chains."""
     processors = prioritised([_with_divisors(processor) for processor in system.processors])
     told = replace(system, processors=processors)
-    told = replace(told, tasks=tasks_of(told))
-    return routed(replace(told, objects=objects_of(told)))
+    told = routed(replace(told, tasks=tasks_of(told)))
+    return replace(told, objects=objects_of(told))

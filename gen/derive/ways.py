@@ -122,9 +122,16 @@ def _event_over(
 
 
 def routed(system: System) -> System:
-    """The system with the way of each of its chains."""
+    """The system with the way of each of its chains, and the connections on logical ones marked."""
     flow = flow_of(system)
-    return replace(system, chains=tuple(_routed(chain, system, flow) for chain in system.chains))
+    chains = tuple(_routed(chain, system, flow) for chain in system.chains)
+    logical = {hop for chain in chains if chain.logical for hop in pairwise(chain.way)}
+    if not logical:
+        return replace(system, chains=chains)
+    connections = tuple(
+        replace(one, logical=(one.source, one.target) in logical) for one in system.connections
+    )
+    return replace(system, chains=chains, connections=connections)
 
 
 def _routed(chain: Chain, system: System, flow: Flow) -> Chain:

@@ -19,9 +19,11 @@ from itertools import pairwise, product, zip_longest
 import networkx as nx
 
 from ravenchart.gen.language.quantities import BITS_PER_SECOND, shown
+from ravenchart.gen.language.terms import Ns
 from ravenchart.gen.model.buses import Bus, Message
 from ravenchart.gen.model.component import Direction, Port
 from ravenchart.gen.model.instances import End, Instance
+from ravenchart.gen.model.logical import logical_of
 from ravenchart.gen.model.nodes import Node
 from ravenchart.gen.model.system import Processor, System
 
@@ -115,7 +117,8 @@ class _Drawing:
         for processor in processors:
             look = {"style": "filled", "fillcolor": PAPER}
             table = Drawn(_table_name(processor), {"label": _table(processor)})
-            title = _title(processor, several=node.cores > 1)
+            lasting = logical_of(self.system, processor.name)
+            title = _title(processor, lasting, several=node.cores > 1)
             items.append(_framed(f"processor {processor.name}", title, look, [table]))
         for start in range(0, len(processors), IN_A_ROW):
             row = [_table_name(p) for p in processors[start : start + IN_A_ROW]]
@@ -239,14 +242,14 @@ def _framed(name: str, label: str, look: Attributes, items: Sequence[DotItem]) -
     return Group(cluster(name), (Defaults("graph", frame | look), *items))
 
 
-def _title(processor: Processor, *, several: bool) -> str:
+def _title(processor: Processor, lasting: Ns | None, *, several: bool) -> str:
     release = f"every {shown(processor.period)}"
     if processor.released_by is not None:
         release = f"on {processor.released_by}, at most {release}"
     if processor.cyclic:
         release += ", cyclic executive"
-    if processor.logical is not None:
-        release += f", logical execution time {shown(processor.logical)}"
+    if lasting is not None:
+        release += f", logical execution time {shown(lasting)}"
     place = f"priority {processor.priority}{f', core {processor.core}' if several else ''}"
     facts = f'<font point-size="{SMALL}">{html(release)}, {place}{ROOM}</font>'
     return f"processor {html(processor.name, 'b')}{LEFT}{facts}{LEFT}"

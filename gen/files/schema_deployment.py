@@ -286,3 +286,7 @@ class ChainForm(Element):
     age: PositiveSpan | None = optional(
         "Longest time from the sampling of an input to an output made of it."
     )
+    logical_execution_time: Literal[True] | None = optional(
+        "`true`: what goes from one processor of a node to another on the way becomes visible at "
+        "the end of the period of its sender, and not before."
+    )

@@ -107,3 +107,5 @@ class Connection:
     target: End
     bus: str | None = None
     """The bus between nodes that the model names for it, of several."""
+    logical: bool = False
+    """A chain asks that its values become visible at the end of the period of their sender."""

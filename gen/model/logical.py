@@ -13,7 +13,7 @@ of the table decides, as always.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ravenchart.gen.language.terms import Ns
@@ -49,9 +49,9 @@ class LogicalLink:
 
 def logical_links(system: System) -> tuple[LogicalLink, ...]:
     """Every one of a system, in the order of its connections."""
-    if all(processor.logical is None for processor in system.processors):
-        return ()
-    return tuple(_links(system))
+    asked = any(processor.logical is not None for processor in system.processors)
+    asked = asked or any(connection.logical for connection in system.connections)
+    return tuple(_links(system)) if asked else ()
 
 
 def links_by_port(system: System) -> dict[End, LogicalLink]:
@@ -60,8 +60,15 @@ def links_by_port(system: System) -> dict[End, LogicalLink]:
 
 
 def logical_of(system: System, element: str) -> Ns | None:
-    """The logical execution time of a processor that has one; None for any other task."""
-    return next((one.logical for one in system.processors if one.name == element), None)
+    """The logical execution time of a processor that has one; None for any other task.
+
+    A chain gives it to the processors that send on its way: their period.
+    """
+    own = next((one.logical for one in system.processors if one.name == element), None)
+    if own is not None:
+        return own
+    links = (one for one in logical_links(system) if one.sender.name == element)
+    return next((link.lasting for link in links), None)
 
 
 def period_of(processor: Processor, slot: Slot) -> Ns:
@@ -92,6 +99,19 @@ def saved_wait(one: tuple[Processor, Slot], other: tuple[Processor, Slot], lasti
     return grid - (first_of(*other) - first_of(*one) - lasting) % grid
 
 
+def _timed_sender(connection: Connection, senders: Sequence[Processor]) -> Processor | None:
+    """The processor that decides when the values of a connection become visible.
+
+    Where a chain asks for that, one processor sends, with releases by time.
+    """
+    own = next((one for one in senders if one.logical is not None), None)
+    if own is not None or not connection.logical or not senders:
+        return own
+    first = senders[0]
+    together = all(one.name == first.name for one in senders)
+    return first if together and first.released_by is None else None
+
+
 def _links(system: System) -> Iterator[LogicalLink]:
     for connection in system.connections:
         source = system.instance(connection.source.instance)
@@ -100,16 +120,17 @@ def _links(system: System) -> Iterator[LogicalLink]:
         )
         places = [timed_row(system, row) for row in rows]
         port = system.instance(connection.target.instance).component.port(connection.target.name)
-        logical = next((p for p, _ in places if p.logical is not None), None)
-        if logical is None or logical.logical is None or port.kind is not PortKind.SAMPLED:
+        logical = _timed_sender(connection, [processor for processor, _ in places])
+        if logical is None or port.kind is not PortKind.SAMPLED:
             continue
+        lasting = logical.period if logical.logical is None else logical.logical
         handler = system.handler(connection.target)
         receiver = system.processor_of(handler)
         if receiver.name == logical.name or receiver.released_by is not None:
             continue
-        ahead = logical.logical + receiver.deadline
+        ahead = lasting + receiver.deadline
         of_rows = sum(-(-ahead // period_of(processor, slot)) for processor, slot in places)
         of_releases = -(-ahead // logical.period)
         depth, fewer = 1 + min(of_rows, of_releases), of_releases < of_rows
         ends = connection, logical, receiver
-        yield LogicalLink(*ends, logical.logical, handler, rows, depth, fewer)
+        yield LogicalLink(*ends, lasting, handler, rows, depth, fewer)

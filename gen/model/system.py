@@ -248,6 +248,8 @@ class Chain:
     gap: Gap | None = None
     of_call: bool = False
     """It counts from the release of its first row, which makes a call, whatever that waits for."""
+    logical: bool = False
+    """Its values become visible at the ends of the periods of their senders."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -392,7 +392,9 @@ def chain_of(
         return None
     reaction = None if form.reaction is None else Ns(form.reaction)
     age = None if form.age is None else Ns(form.age)
-    return Chain(name, form.origin, tuple(p for p in places if p), reaction, age)
+    path = tuple(place for place in places if place)
+    logical = form.logical_execution_time is not None
+    return Chain(name, form.origin, path, reaction, age, logical=logical)
 
 
 def _row_at(text: str, origin: Origin, site: DeploymentNames) -> End | None:

@@ -9,7 +9,7 @@ the node sees of such a one would depend on when its rows happen to run.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ravenchart.gen.derive.calls import asking, serving
 from ravenchart.gen.derive.completion import programs
@@ -17,9 +17,9 @@ from ravenchart.gen.diagnostics import Diagnostic, error
 from ravenchart.gen.language.quantities import shown
 from ravenchart.gen.model.commands import Server
 from ravenchart.gen.model.component import PortKind
-from ravenchart.gen.model.instances import Connection
+from ravenchart.gen.model.instances import Connection, End
 from ravenchart.gen.model.logical import LogicalLink, logical_links
-from ravenchart.gen.model.system import Processor, System
+from ravenchart.gen.model.system import Carried, Processor, Stop, System
 
 CODE = "RV-0717"
 
@@ -32,11 +32,60 @@ def visible_at_instants(system: System) -> Iterator[Diagnostic]:
 
     ``system`` is completed. Of an instance on several processors that is all that is said.
     """
+    yield from _chains(system)
     if all(processor.logical is None for processor in system.processors):
         return
     for part in programs(system):
         divided = list(_divided_instances(part))
         yield from divided or (*_connections(part), *_commands(part), *_depths(part))
+
+
+def _chains(system: System) -> Iterator[Diagnostic]:
+    """Values of a logical chain go between processors of a node by sampled ports."""
+    rows = {slot.element for slot in system.slots}
+    links = logical_links(system)
+    for chain in system.chains if any(one.logical for one in system.chains) else ():
+        before: Stop | None = None
+        over: list[Stop] = []
+        for stop in chain.way if chain.logical else ():
+            if str(stop) not in rows:
+                over.append(stop)
+                continue
+            carried = any(isinstance(one, Carried) for one in over)
+            told = None if before is None or carried else _early(system, links, before, over, stop)
+            told = told or _handled_elsewhere(system, over, stop)
+            if told is not None:
+                message = f"the chain {chain.name} has logical execution times, but {told}"
+                yield error(CODE, chain.origin, message, hint=_BY_PORTS)
+            before, over = stop, []
+
+
+_BY_PORTS = "let a sampled port bring the values to a periodic processor, or use one processor"
+
+
+def _early(
+    system: System, links: Sequence[LogicalLink], before: Stop, over: Sequence[Stop], after: Stop
+) -> str | None:
+    """How values go from one row to another on its node before the end of a period."""
+    sender, receiver = (system.processor_of(str(one)) for one in (before, after))
+    known = any(str(before) in one.rows and one.connection.target in over for one in links)
+    if known or sender.name == receiver.name:
+        return None
+    way = f"{before} on {sender.name} to {after} on {receiver.name}"
+    return f"values go from {way} without instants"
+
+
+def _handled_elsewhere(system: System, over: Sequence[Stop], row: Stop) -> str | None:
+    """How another processor handles the port that a row reads."""
+    for end in over[-1:]:
+        ports = system.instance(end.instance).component.inputs() if isinstance(end, End) else ()
+        if any(isinstance(end, End) and port.name == end.name for port in ports):
+            assert isinstance(end, End)
+            handler = system.handler(end)
+            one, other = (system.processor_of(each).name for each in (handler, str(row)))
+            if one != other:
+                return f"{handler} on {one} takes the values that {row} on {other} reads"
+    return None
 
 
 def _divided_instances(system: System) -> Iterator[Diagnostic]:

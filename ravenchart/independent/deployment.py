@@ -245,7 +245,7 @@ class Deployment:
         for name, form in self.model.section("processors").maps():
             homes = self._homes(form)
             for node in homes:
-                task = self._processor(name, form, node, len(homes) > 1 and not form.text("node"))
+                task = self._processor(name, form, node, len(homes) > 1)
                 if task.rows:
                     found.append(task)
         return found
@@ -285,7 +285,8 @@ class Deployment:
                 continue
             if watch and len(joining) > 1:
                 row.element += f"_{node}"
-            if several and name_of == "receive" and not mine:
+            hearing = [n for n in self.nodes if self.heard(owner, n)]
+            if len(hearing) > 1 and name_of == "receive" and not mine:
                 row.element += f"_{node}"
             rows.append(row)
         if not rows:

@@ -142,6 +142,11 @@ class Timing:
         form = self.deployment.nodes.map(node).map("tick")
         return (form.time("period"), form.time("wcet")) if form else (0, 0)
 
+    def _has_logical_chains(self) -> bool:
+        """Whether a chain gives its senders a logical execution time."""
+        chains = self.deployment.model.section("chains").maps()
+        return any(form.text("logical_execution_time") for _, form in chains)
+
     def _facts(self, task: Task) -> None:
         own, why = ada(task.element), f"of {task.element} by the model"
         level = own if task.after is None else f"{ada(task.element.partition('.')[0])}_Driver"
@@ -151,8 +156,12 @@ class Timing:
         periodic = bool(task.rows) and not task.sporadic
         if periodic and any(t.offset for t in self.deployment.tasks if t.node == task.node):
             self.same("tasks", f"{own}_O", task.offset, f"the offset {why}")
-        if task.lasting:
-            self.same("tasks", f"{own}_Let", task.lasting, f"the logical execution time {why}")
+        lasting = task.lasting
+        if not lasting and self.has(f"{own}_Let") and self._has_logical_chains():
+            self.report.skip("which processors send on chains with logical execution times")
+            lasting = task.period
+        if lasting:
+            self.same("tasks", f"{own}_Let", lasting, f"the logical execution time {why}")
         jitter = self.jitter(task)
         self.same("tasks", f"{own}_J", jitter, f"the lateness of {task.element}")
         if not task.rows:
