@@ -58,11 +58,17 @@ class RequiredForm(Element):
     """A required interface: commands that one provider gives, whatever it is."""
 
     axes: int = PydanticField(default=1, ge=1, le=16, description="Axes it works on, 1 to 16.")
-    commands: Annotated[
-        Annotated[list[Reference], Tag("<list>")]
-        | Annotated[dict[Reference, NeedForm], Tag("<map>")],
-        shaped("a list of commands, or a mapping from commands to their properties"),
-    ] = key("The commands; in the component they are called by their names.")
+    commands: (
+        Annotated[
+            Annotated[list[Reference], Tag("<list>")]
+            | Annotated[dict[Reference, NeedForm], Tag("<map>")],
+            shaped("a list of commands, or a mapping from commands to their properties"),
+        ]
+        | None
+    ) = optional(
+        "The commands; in the component they are called by their names. An interface without any "
+        "has `events`."
+    )
     events: dict[Reference, Reference] | None = optional(
         "Events of the provider, each with the input port that it comes to."
     )

@@ -167,7 +167,9 @@ def parts_of(
 def _calls(form: ComponentForm, members: Members, needs: tuple[Need, ...]) -> NameScope[Need]:
     """The required commands that can be called."""
     scope: NameScope[Need] = NameScope("required command")
+    required = (form.requires or {}).values()
     scope.open = form.lost("requires") or bool(form.dropped("requires"))
+    scope.open |= any(one.lost("commands") for one in required)
     called = {need.name.lower(): need for need in needs if not need.is_read}
     for name, origin, port in members.ports.items.values():
         if port is None or port.is_command:

@@ -122,6 +122,9 @@ def needs_of(
         space.claim("required interface", interface, at.origin)
         if at.lost("commands") or at.list_damaged("commands") or at.dropped("commands"):
             members.data_types.open = True
+        if at.commands is None and at.events is None and not at.damaged:
+            message = f"{interface} needs the key `commands`, or `events`"
+            space.findings.error("RV-0202", at.origin, message)
         for name, origin, said in named_commands(at):
             command = dictionary.look_up(name, origin, space.findings)
             made = None

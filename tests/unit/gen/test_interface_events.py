@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ravenchart.analysis.findings.claims import claims_of
 from ravenchart.analysis.system.timing import analyse
+from ravenchart.gen.derive.crossing import crossings
 from ravenchart.gen.diagnostics import render
 from ravenchart.gen.emit.program import generate
 from ravenchart.gen.model.system import System
@@ -91,3 +92,56 @@ def test_of_a_facade_the_one_that_is_chosen_tells() -> None:
     found = load(Path("model.yaml"), lambda path, limit: text.encode())
     assert found.system is not None, [one.message for one in found.diagnostics]
     assert [str(c.source) for c in found.system.connections] == ["grasp_1.Has_It"]
+
+
+ACROSS = """\
+system: Eventful
+types: {Width: {range: [0, 100], unit: mm}}
+commands:
+  Gripped: {kind: event, argument: Width}
+components:
+  Grasp:
+    provides:
+      Work: {events: {Gripped: has_it}}
+    ports: {has_it: {out: Width}}
+    activities:
+      close: {period: 20 ms, wcet: 50 us, body: [{send: has_it, with: 40}]}
+  Boss:
+    requires:
+      Hand: {events: {Gripped: told}}
+    ports: {told: {in: Width, kind: queued, depth: 2, on_arrival: Held}}
+    port_region: {period: 20 ms, wcet: 20 us}
+    events: {Held: {type: Width}}
+    regions:
+      Work:
+        period: 20 ms
+        wcet: 50 us
+        queue: 2
+        initial: A
+        states: {A: {}, B: {}}
+        transitions: {go: {from: A, to: B, on: Held, guard: event > 10}}
+nodes: {board: {cores: 2, context_switch: 5 us, critical_section: 2 us}}
+instances:
+  grasp_1: {component: Grasp, node: board}
+  boss_1: {component: Boss, node: board}
+bindings: [{from: boss_1.Hand, to: grasp_1.Work}]
+processors:
+  one: {stack: 16 KiB, activities: [boss_1.ports, boss_1.Work]}
+  two: {core: 2, stack: 16 KiB, activities: [grasp_1.close]}
+shutdown: {raises: [], grace: 0 ms}
+"""
+
+
+def test_an_event_goes_from_core_to_core() -> None:
+    """It is a value of a port, so it has the mailbox of one."""
+    system = load(Path("model.yaml"), lambda path, limit: ACROSS.encode()).system
+    assert system is not None
+    (crossing,) = crossings(system)
+    assert (crossing.element, crossing.sent_on, crossing.taken_on) == ("boss_1.told", 2, 1)
+
+
+def test_an_interface_has_commands_or_events() -> None:
+    text = ACROSS.replace("Hand: {events: {Gripped: told}}", "Hand: {axes: 1}")
+    found = load(Path("model.yaml"), lambda path, limit: text.encode())
+    said = [one.message for one in found.diagnostics]
+    assert "Hand needs the key `commands`, or `events`" in said
