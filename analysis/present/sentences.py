@@ -146,8 +146,12 @@ def response_parts(
 
 def instant_lines(system: System) -> tuple[str, ...]:
     """Logical execution times and chosen or given phases, each in a sentence."""
-    times = {one.name: logical_of(system, one.name) for one in system.processors}
-    logical = [f"{name} {shown(time)}" for name, time in times.items() if time is not None]
+    times = ((one, logical_of(system, one.name)) for one in system.processors)
+    logical = [
+        f"{one.name} {shown(time)}{' on chains' if one.logical is None else ''}"
+        for one, time in times
+        if time is not None
+    ]
     phases = [
         f"{slot.element} {shown(Ns(slot.phase * processor.period))}"
         for processor in system.processors

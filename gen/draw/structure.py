@@ -249,7 +249,8 @@ def _title(processor: Processor, lasting: Ns | None, *, several: bool) -> str:
     if processor.cyclic:
         release += ", cyclic executive"
     if lasting is not None:
-        release += f", logical execution time {shown(lasting)}"
+        on = " on chains" if processor.logical is None else ""
+        release += f", logical execution time {shown(lasting)}{on}"
     place = f"priority {processor.priority}{f', core {processor.core}' if several else ''}"
     facts = f'<font point-size="{SMALL}">{html(release)}, {place}{ROOM}</font>'
     return f"processor {html(processor.name, 'b')}{LEFT}{facts}{LEFT}"

@@ -11,10 +11,12 @@ from pathlib import Path
 
 import pytest
 
+from ravenchart.analysis.present.sentences import instant_lines
 from ravenchart.analysis.system.timing import analyse
 from ravenchart.building import checking, generation
 from ravenchart.commands.simulate import build_simulation, executed, interpreted
 from ravenchart.gen.diagnostics import render
+from ravenchart.gen.draw.structure import structure_dot
 from ravenchart.gen.model.logical import logical_links, logical_of
 from ravenchart.gen.model.system import System
 from ravenchart.gen.pipeline import load
@@ -62,6 +64,13 @@ def test_the_connections_of_the_chain_alone_have_instants() -> None:
     links = {str(one.connection.target): one.lasting for one in logical_links(system)}
     assert links == {"filter_1.sample": 5_000_000, "law_1.filtered": 10_000_000}
     assert [logical_of(system, p.name) for p in system.processors] == [5_000_000, 10_000_000, None]
+
+
+def test_report_and_drawing_say_that_chains_ask_for_it() -> None:
+    system = system_of(TEXT)
+    told = "Logical execution times: making 5 ms on chains, filtering 10 ms on chains."
+    assert instant_lines(system) == (told,)
+    assert "logical execution time 10 ms on chains" in structure_dot(system)
 
 
 def test_a_value_is_seen_at_the_first_release_behind_the_period_of_its_sender() -> None:

@@ -255,7 +255,9 @@ def _words(system: System, task: Task, held: tuple[SharedObject, str] | None) ->
             what += ", first O after the epoch of its node"
     text = f"[{task.element}] {what}."
     if logical_of(system, task.element) is not None:
-        text += " Let: what it sends is visible so long after its release."
+        own = any(one.logical is not None for one in system.processors if one.name == task.element)
+        where = "" if own else " on the way of a chain"
+        text += f" Let: what it sends{where} is visible so long after its release."
     text += f" B: {held[1]} in {held[0].element}." if held else " B: no blocking."
     rare = sorted({slot.divisor for slot in task.slots if slot.divisor > 1})
     if has_phases(task):
