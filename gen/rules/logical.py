@@ -33,7 +33,8 @@ def visible_at_instants(system: System) -> Iterator[Diagnostic]:
     ``system`` is completed. Of an instance on several processors that is all that is said.
     """
     yield from _chains(system)
-    if all(processor.logical is None for processor in system.processors):
+    asked = any(processor.logical is not None for processor in system.processors)
+    if not (asked or logical_links(system)):
         return
     for part in programs(system):
         divided = list(_divided_instances(part))
@@ -42,12 +43,13 @@ def visible_at_instants(system: System) -> Iterator[Diagnostic]:
 
 def _chains(system: System) -> Iterator[Diagnostic]:
     """Values of a logical chain go between processors of a node by sampled ports."""
+    chains = [chain for chain in system.chains if chain.logical]
+    links = logical_links(system) if chains else ()
     rows = {slot.element for slot in system.slots}
-    links = logical_links(system)
-    for chain in system.chains if any(one.logical for one in system.chains) else ():
+    for chain in chains:
         before: Stop | None = None
         over: list[Stop] = []
-        for stop in chain.way if chain.logical else ():
+        for stop in chain.way:
             if str(stop) not in rows:
                 over.append(stop)
                 continue
@@ -77,15 +79,16 @@ def _early(
 
 def _handled_elsewhere(system: System, over: Sequence[Stop], row: Stop) -> str | None:
     """How another processor handles the port that a row reads."""
-    for end in over[-1:]:
-        ports = system.instance(end.instance).component.inputs() if isinstance(end, End) else ()
-        if any(isinstance(end, End) and port.name == end.name for port in ports):
-            assert isinstance(end, End)
-            handler = system.handler(end)
-            one, other = (system.processor_of(each).name for each in (handler, str(row)))
-            if one != other:
-                return f"{handler} on {one} takes the values that {row} on {other} reads"
-    return None
+    port = over[-1] if over else None
+    if not isinstance(port, End):
+        return None
+    inputs = system.instance(port.instance).component.inputs()
+    if all(one.name != port.name for one in inputs):
+        return None
+    handler = system.handler(port)
+    one, other = (system.processor_of(each).name for each in (handler, str(row)))
+    told = f"{handler} on {one} takes the values that {row} on {other} reads"
+    return None if one == other else told
 
 
 def _divided_instances(system: System) -> Iterator[Diagnostic]:

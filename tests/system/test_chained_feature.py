@@ -147,6 +147,16 @@ def test_the_independent_checker_agrees(tmp_path: Path) -> None:
             ],
             "filter_1.ports on steering takes the values that filter_1.filter on filtering reads",
         ),
+        (
+            [
+                ("    port_region: {period: 10 ms", "    port_region: {period: 2 s"),
+                (
+                    "        period: 10 ms\n        wcet: 3 ms",
+                    "        period: 2 s\n        wcet: 3 ms",
+                ),
+            ],
+            "filter_1.sample would keep 402 values, and may keep 256",
+        ),
         ([("time: true", "time: false")], "`logical_execution_time`"),
         ([("time: true", "time: 5 ms")], "`logical_execution_time`"),
     ],
