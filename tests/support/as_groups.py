@@ -115,7 +115,10 @@ class Grouped:
     def _table(self, processor: Json) -> None:
         """Put the rows of the groups of its port regions behind these, or apart."""
         made = []
-        together = self.chance is None or {"logical_execution_time", "schedule"} & processor.keys()
+        chains = self.model.get("chains", {}).values()
+        logical = any("logical_execution_time" in chain for chain in chains)
+        kept = logical or {"logical_execution_time", "schedule"} & processor.keys()
+        together = self.chance is None or kept
         same: Json = {key: processor[key] for key in ("node", "core") if key in processor}
         for row in processor["activities"]:
             owner = row.removesuffix(HANDLES)
